@@ -1,0 +1,22 @@
+/// calibrate(): the loop: design, evaluate, learn, propose, confirm.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+
+#include "calibrator/calibration.hpp"
+#include "calibrator/evaluator.hpp"
+#include "calibrator/fit.hpp"
+
+namespace repose::calibrator {
+
+using ProgressObserver = std::function<void(const Progress&)>;
+
+/// Pure: equal calibrations and equally answering evaluators give equal bits, so a resumed calibration
+/// is a replay whose evaluator answers from the store. Throws only what the evaluator throws.
+Fit calibrate(const Calibration& calibration,
+              const Evaluator& evaluator,
+              std::stop_token stop = {},
+              const ProgressObserver& observer = {});
+
+}  // namespace repose::calibrator

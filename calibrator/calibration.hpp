@@ -1,0 +1,66 @@
+/// Calibration: the question. Which parameters are free, what was measured, what may be spent.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calibrator/measurement.hpp"
+#include "engine/parameter_set.hpp"
+
+namespace repose::calibrator {
+
+/// How a free parameter is mapped to [0, 1]: evenly in its value or in its logarithm.
+enum class Scale : std::uint8_t { linear, log };
+
+inline constexpr std::array<std::string_view, 2> scale_names{"linear", "log"};
+
+struct FreeParameter {
+  engine::ParameterKey key;
+  double lower = 0.0;  ///< SI
+  double upper = 1.0;  ///< SI
+  Scale scale = Scale::linear;
+  engine::Unit unit;  ///< as the user gave it; for printing only
+
+  bool operator==(const FreeParameter&) const = default;
+};
+
+/// A parameter that follows another: value = factor x the other's.
+struct Tie {
+  engine::ParameterKey key;
+  engine::ParameterKey to;
+  double factor = 1.0;
+
+  bool operator==(const Tie&) const = default;
+};
+
+/// What may be spent. One evaluation is every experiment of the study at one parameter set with one
+/// seed.
+struct Budget {
+  int evaluations = 60;
+  int batch = 4;  ///< evaluations proposed at a time; part of the question, so that the number of
+                  ///< workers is not
+  engine::Fidelity fidelity = engine::Fidelity::standard;
+  /// Fidelity of the runs that confirm the best set. Where it differs from `fidelity`, the offset
+  /// between the two is learnt from paired runs and carried by every prediction.
+  engine::Fidelity confirm_fidelity = engine::Fidelity::standard;
+
+  bool operator==(const Budget&) const = default;
+};
+
+struct Calibration {
+  std::string name;
+  engine::ParameterSet fixed;  ///< materials' properties and fixed parameters
+  std::vector<FreeParameter> free;
+  std::vector<Tie> tied;
+  std::vector<Measurement> measurements;
+  std::vector<std::string> suspects;  ///< effects to be weighed by the diagnosis
+  Budget budget;
+  std::uint64_t seed = 1;
+
+  bool operator==(const Calibration&) const = default;
+};
+
+}  // namespace repose::calibrator

@@ -1,0 +1,31 @@
+/// Measurement: one observable as the laboratory saw it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "engine/experiment.hpp"
+
+namespace repose::calibrator {
+
+/// Whether a measurement is fitted, or set aside to see whether the model predicts it.
+enum class Role : std::uint8_t { fit, held_out };
+
+inline constexpr std::array<std::string_view, 2> role_names{"fit", "held_out"};
+
+struct Measurement {
+  engine::Experiment experiment;  ///< its fidelity is the budget's
+  std::string observable;
+  double value = 0.0;           ///< SI
+  double standard_error = 0.0;  ///< SI; standard uncertainty of `value`, k = 1
+  double allowance = 0.0;       ///< SI; stated model discrepancy, added in quadrature
+  Role role = Role::fit;
+  engine::Unit unit;            ///< as the user gave it; for printing only
+  std::string source;
+
+  bool operator==(const Measurement&) const = default;
+};
+
+}  // namespace repose::calibrator

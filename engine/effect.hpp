@@ -1,0 +1,86 @@
+/// Effect: one physical departure from smooth elastic spheres, and where it may act.
+///
+/// An effect is a struct in one file of effects/, admitted by one line of effects/all.hpp. It holds a
+/// `text`, a table of `fields`, its `stage` and `scope`, and at least one hook:
+///
+///   populate   once, when grains are made: may change their sizes
+///   prepare    once per material pair: Parameters, pair elasticity -> Coefficients
+///   contact    each step, per block of contacts: columns in, columns out
+///
+/// At the null value of all its parameters an effect is exactly absent.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "engine/contact_block.hpp"
+#include "engine/field.hpp"
+#include "engine/random.hpp"
+
+namespace repose::engine {
+
+/// When an effect acts; the list in effects/all.hpp is in this order.
+enum class Stage : std::uint8_t { population, dissipation, adhesion, friction, rolling, body };
+
+inline constexpr std::array<std::string_view, 6> stage_names{
+    "population",
+    "dissipation",
+    "adhesion",
+    "friction",
+    "rolling",
+    "body",
+};
+
+/// How many materials a parameter belongs to: none, one, or a pair. The enumerators' values are that
+/// number.
+enum class Scope : std::uint8_t { global = 0, material = 1, pair = 2 };
+
+inline constexpr std::array<std::string_view, 3> scope_names{"global", "material", "pair"};
+
+struct EffectText {
+  std::string_view name;
+  std::string_view title;
+  std::string_view summary;
+  std::string_view citation;
+};
+
+/// A catalogue entry: made from the effect's file, read by everyone else.
+struct EffectInfo {
+  EffectText text;
+  Stage stage;
+  Scope scope;
+  std::span<const FieldInfo> fields;
+};
+
+/// Elastic constants of two materials in contact (Johnson 1985, Contact Mechanics, ch. 4 and 7).
+struct PairElastic {
+  double modulus;        ///< E* = 1 / ((1 - nu1^2) / E1 + (1 - nu2^2) / E2), Pa
+  double shear_modulus;  ///< G* = 1 / ((2 - nu1) / G1 + (2 - nu2) / G2), Pa
+};
+
+template <class E>
+concept ContactHook = requires(ContactBlock& block,
+                               const typename E::Coefficients& coefficients,
+                               HistoryBlock history,
+                               double dt) {
+  { E::contact(block, coefficients, history, dt) } -> std::same_as<void>;
+  { E::history_columns } -> std::convertible_to<int>;
+};
+
+template <class E>
+concept PopulateHook = requires(const typename E::Parameters& parameters, Random& random) {
+  { E::populate(parameters, random) } -> std::same_as<double>;  // grain volume over mean volume
+};
+
+template <class E>
+concept Effect = requires {
+  { E::text } -> std::convertible_to<EffectText>;
+  { E::stage } -> std::convertible_to<Stage>;
+  { E::scope } -> std::convertible_to<Scope>;
+  E::fields;
+} && sizeof(typename E::Parameters) == E::fields.size() * sizeof(double) &&
+                 (ContactHook<E> || PopulateHook<E>);
+
+}  // namespace repose::engine

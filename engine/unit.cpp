@@ -1,0 +1,48 @@
+#include "engine/unit.hpp"
+
+#include <algorithm>
+
+namespace repose::engine::unit {
+
+std::span<const Unit> all() {
+  static constexpr std::array units{
+      one,
+      percent,
+      metre,
+      centimetre,
+      millimetre,
+      micrometre,
+      inch,
+      second,
+      millisecond,
+      kilogram,
+      gram,
+      milligram,
+      kilogram_per_second,
+      kilogram_per_cubic_metre,
+      gram_per_cubic_centimetre,
+      kilogram_per_second_metre,
+      pascal,
+      kilopascal,
+      megapascal,
+      gigapascal,
+      metre_per_second,
+      millimetre_per_second,
+      metre_per_second_squared,
+      radian,
+      degree,
+      radian_per_second,
+      degree_per_second,
+      revolution_per_minute,
+  };
+  return units;
+}
+
+std::optional<Unit> find(std::string_view symbol) {
+  const auto units = all();
+  const auto found = std::ranges::find(units, symbol, &Unit::symbol);
+  if (found == units.end()) return std::nullopt;
+  return *found;
+}
+
+}  // namespace repose::engine::unit
