@@ -1,0 +1,22 @@
+/// Every effect there is, in the order a step applies them. To add one: its file, its line here.
+#pragma once
+
+#include <tuple>
+
+#include "engine/effects/elastic_rolling_resistance.hpp"
+#include "engine/effects/restitution.hpp"
+#include "engine/effects/rolling_resistance.hpp"
+#include "engine/effects/size_spread.hpp"
+#include "engine/effects/sliding_friction.hpp"
+
+namespace repose::engine {
+
+using AllEffects = std::tuple<effects::SizeSpread,
+                              effects::Restitution,
+                              effects::SlidingFriction,
+                              effects::RollingResistance,
+                              effects::ElasticRollingResistance>;
+
+inline constexpr std::size_t effect_count = std::tuple_size_v<AllEffects>;
+
+}  // namespace repose::engine
