@@ -1,4 +1,5 @@
-/// The catalogue: every effect, experiment and material property, for those who do not know the types.
+/// The catalogue: every effect, experiment and material property, for those who do not know the
+/// types.
 #pragma once
 
 #include <span>
@@ -34,8 +35,8 @@ std::span<const std::string> parameter_names();
 /// How many materials a key of that scope names.
 constexpr std::size_t materials_of(Scope scope) { return static_cast<std::size_t>(scope); }
 
-/// The value of every setting of an experiment, in catalogue order: what was set, else the default of
-/// the fidelity.
+/// The value of every setting of an experiment, in catalogue order: what was set, else the default
+/// of the fidelity.
 std::vector<double> resolved_settings(const ExperimentInfo& info, const Experiment& experiment);
 
 }  // namespace repose::engine

@@ -1,7 +1,7 @@
 /// ContactBlock: 64 contacts side by side, a column per quantity; what effects read and write.
 ///
-/// Conventions. A contact has two ends, i and j; at a wall, j is the wall. The normal points from j to
-/// i. Forces and torques are those on i; j receives the opposite force, and its own torque.
+/// Conventions. A contact has two ends, i and j; at a wall, j is the wall. The normal points from j
+/// to i. Forces and torques are those on i; j receives the opposite force, and its own torque.
 ///
 ///   stage         reads                              writes
 ///   kinematics    ends                               geometry and relative motion
@@ -14,47 +14,54 @@
 ///   rolling       roll, spins, elastic_force,        couple_x..z
 ///                 grip_force
 ///
-/// Lanes past the last contact hold two spheres that just touch, at rest: loops always run to `width`.
+/// Lanes past the last contact hold two spheres that just touch, at rest: loops always run to
+/// `width`.
 #pragma once
 
 #include <array>
 
 namespace repose::engine {
 
+/// What the contacts of a block have at their end j.
+enum class Partner { grain, wall };
+
 struct ContactBlock {
   static constexpr int width = 64;
   using Column = std::array<double, width>;
 
   // Ends, as gathered.
-  alignas(64) Column normal_x, normal_y, normal_z;     ///< centre i - centre j, m; then unit normal
-  alignas(64) Column radius_i, radius_j;               ///< m
-  alignas(64) Column inverse_mass_i, inverse_mass_j;   ///< 1/kg; 0 for a wall
-  alignas(64) Column slip_x, slip_y, slip_z;           ///< velocity i - velocity j, m/s; then the
-                                                       ///< tangential velocity at the contact
-  alignas(64) Column spin_i_x, spin_i_y, spin_i_z;     ///< rad/s
-  alignas(64) Column spin_j_x, spin_j_y, spin_j_z;     ///< rad/s
+  alignas(64) Column normal_x, normal_y, normal_z;    ///< centre i - centre j, m; then unit normal
+  alignas(64) Column radius_i, radius_j;              ///< m
+  alignas(64) Column inverse_mass_i, inverse_mass_j;  ///< 1/kg; 0 for a wall
+  alignas(64) Column slip_x, slip_y, slip_z;          ///< velocity i - velocity j, m/s; then the
+                                                      ///< tangential velocity at the contact
+  alignas(64) Column spin_i_x, spin_i_y, spin_i_z;    ///< rad/s
+  alignas(64) Column spin_j_x, spin_j_y, spin_j_z;    ///< rad/s
 
   // Kinematics.
-  alignas(64) Column overlap;                ///< m, >= 0
-  alignas(64) Column radius;                 ///< reduced radius R*, m
-  alignas(64) Column mass;                   ///< reduced mass m*, kg
-  alignas(64) Column arm_i, arm_j;           ///< from the centres to the contact point, m
-  alignas(64) Column approach;               ///< normal speed of approach, m/s
-  alignas(64) Column roll_x, roll_y, roll_z; ///< spin i - spin j without the twist, rad/s
+  alignas(64) Column overlap;                 ///< m, >= 0
+  alignas(64) Column radius;                  ///< reduced radius R*, m
+  alignas(64) Column mass;                    ///< reduced mass m*, kg
+  alignas(64) Column arm_i, arm_j;            ///< from the centres to the contact point, m
+  alignas(64) Column approach;                ///< normal speed of approach, m/s
+  alignas(64) Column roll_x, roll_y, roll_z;  ///< spin i - spin j without the twist, rad/s
 
   // Forces.
-  alignas(64) Column patch_radius;                      ///< of the contact patch, sqrt(R* overlap), m
-  alignas(64) Column elastic_force;                     ///< Hertz's, N
-  alignas(64) Column normal_force;                      ///< on i along the normal, N
-  alignas(64) Column grip_force;                        ///< what friction may lean on, N, >= 0
-  alignas(64) Column shear_damping;                     ///< tangential dashpot, N s/m
-  alignas(64) Column tangent_x, tangent_y, tangent_z;   ///< friction force on i, N
-  alignas(64) Column couple_x, couple_y, couple_z;      ///< rolling couple on i (opposite on j), N m
+  alignas(64) Column patch_radius;   ///< of the contact patch, sqrt(R* overlap), m
+  alignas(64) Column elastic_force;  ///< Hertz's, N
+  alignas(64) Column normal_force;   ///< on i along the normal, N
+  alignas(64) Column grip_force;     ///< what friction may lean on, N, >= 0
+  alignas(64) Column shear_damping;  ///< tangential dashpot, N s/m
+  alignas(64) Column tangent_x, tangent_y, tangent_z;  ///< friction force on i, N
+  alignas(64) Column couple_x, couple_y, couple_z;     ///< rolling couple on i (opposite on j), N m
 
-  int count = 0;                ///< contacts in the block
-  double modulus = 0.0;         ///< E* of the pair, Pa
-  double shear_modulus = 0.0;   ///< G* of the pair, Pa
+  int count = 0;               ///< contacts in the block
+  double modulus = 0.0;        ///< E* of the pair, Pa
+  double shear_modulus = 0.0;  ///< G* of the pair, Pa
 };
+
+/// Most columns of history that the contacts of one model may carry.
+inline constexpr int most_history_columns = 12;
 
 /// The history of a block's contacts: columns that belong to the effects that asked for them. A
 /// contact's history starts at zero when it closes and is forgotten when it opens.

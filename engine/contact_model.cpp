@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-// One binary, fast everywhere: the block kernel is compiled for three instruction sets and the loader
-// picks one. Bits are equal on all, since nothing is contracted. clang 14 refuses the attribute, and the
-// sanitizers' start-up cannot resolve it.
+// One binary, fast everywhere: the block kernel is compiled for three instruction sets and the
+// loader picks one. Bits are equal on all, since nothing is contracted. clang 14 refuses the
+// attribute, and the sanitizers' start-up cannot resolve it.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(REPOSE_SANITIZED)
 #define REPOSE_ANY_MACHINE \
   __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4"), flatten))
@@ -20,8 +20,8 @@ namespace {
 
 constexpr int width = ContactBlock::width;
 
-/// Geometry and relative motion from the gathered ends. Velocities at the contact point include both
-/// spins; the point divides the overlap of two grains in halves and lies on a wall's surface.
+/// Geometry and relative motion from the gathered ends. Velocities at the contact point include
+/// both spins; the point divides the overlap of two grains in halves and lies on a wall's surface.
 template <Partner partner>
 [[gnu::always_inline]] inline void kinematics(ContactBlock& c) {
   constexpr double share_i = partner == Partner::grain ? 0.5 : 1.0;
@@ -66,8 +66,8 @@ template <Partner partner>
   }
 }
 
-/// The ground law, from which effects depart: F = (4/3) E* sqrt(R*) d^(3/2), patch radius sqrt(R* d)
-/// (Hertz 1882; Johnson 1985, Contact Mechanics, section 4.2).
+/// The ground law, from which effects depart: F = (4/3) E* sqrt(R*) d^(3/2), patch radius sqrt(R*
+/// d) (Hertz 1882; Johnson 1985, Contact Mechanics, section 4.2).
 [[gnu::always_inline]] inline void hertz(ContactBlock& c) {
   const double stiffness = 4.0 / 3.0 * c.modulus;
   for (int i = 0; i < width; ++i) {
@@ -96,11 +96,8 @@ template <std::size_t I>
 
 // Active effects in catalogue order. The only place where laws are composed.
 REPOSE_ANY_MACHINE
-void apply(const PairLaw& law,
-           Partner partner,
-           ContactBlock& block,
-           HistoryBlock history,
-           double dt) {
+void apply(
+    const PairLaw& law, Partner partner, ContactBlock& block, HistoryBlock history, double dt) {
   block.modulus = law.elastic.modulus;
   block.shear_modulus = law.elastic.shear_modulus;
   if (partner == Partner::grain) {
@@ -118,9 +115,8 @@ void apply(const PairLaw& law,
                        &block.couple_z}) {
     column->fill(0.0);
   }
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (apply_one<I>(law, block, history, dt), ...);
-  }(std::make_index_sequence<effect_count>{});
+  [&]<std::size_t... I>(std::index_sequence<I...>) { (apply_one<I>(law, block, history, dt), ...); }
+  (std::make_index_sequence<effect_count>{});
 }
 
 namespace {
@@ -164,7 +160,8 @@ ContactModel::ContactModel(const ParameterSet& parameters) {
     laws_[i].elastic = pair_elastic(materials_[0], materials_[i]);
     [&]<std::size_t... I>(std::index_sequence<I...>) {
       (bind_one<I>(parameters, id, laws_[i]), ...);
-    }(std::make_index_sequence<effect_count>{});
+    }
+    (std::make_index_sequence<effect_count>{});
     history_columns_ = std::max(history_columns_, laws_[i].history_columns);
   }
 }

@@ -1,5 +1,5 @@
-/// ContactModel: a ParameterSet bound for running: one PairLaw per pair of materials, and the fold that
-/// applies it to a block of contacts.
+/// ContactModel: a ParameterSet bound for running: one PairLaw per pair of materials, and the fold
+/// that applies it to a block of contacts.
 #pragma once
 
 #include <array>
@@ -38,15 +38,9 @@ struct PairLaw {
   CoefficientsOfAll<AllEffects>::type coefficients;
 };
 
-/// What the contacts of a block have at their end j.
-enum class Partner { grain, wall };
-
 /// Forces on a block of contacts: Hertz, then every active effect in the order of the list.
-void apply(const PairLaw& law,
-           Partner partner,
-           ContactBlock& block,
-           HistoryBlock history,
-           double dt);
+void apply(
+    const PairLaw& law, Partner partner, ContactBlock& block, HistoryBlock history, double dt);
 
 /// A parameter set bound for running.
 class ContactModel {

@@ -1,7 +1,7 @@
 /// Effect: one physical departure from smooth elastic spheres, and where it may act.
 ///
-/// An effect is a struct in one file of effects/, admitted by one line of effects/all.hpp. It holds a
-/// `text`, a table of `fields`, its `stage` and `scope`, and at least one hook:
+/// An effect is a struct in one file of effects/, admitted by one line of effects/all.hpp. It holds
+/// a `text`, a table of `fields`, its `stage` and `scope`, and at least one hook:
 ///
 ///   populate   once, when grains are made: may change their sizes
 ///   prepare    once per material pair: Parameters, pair elasticity -> Coefficients
@@ -33,8 +33,8 @@ inline constexpr std::array<std::string_view, 6> stage_names{
     "body",
 };
 
-/// How many materials a parameter belongs to: none, one, or a pair. The enumerators' values are that
-/// number.
+/// How many materials a parameter belongs to: none, one, or a pair. The enumerators' values are
+/// that number.
 enum class Scope : std::uint8_t { global = 0, material = 1, pair = 2 };
 
 inline constexpr std::array<std::string_view, 3> scope_names{"global", "material", "pair"};
@@ -80,7 +80,8 @@ concept Effect = requires {
   { E::stage } -> std::convertible_to<Stage>;
   { E::scope } -> std::convertible_to<Scope>;
   E::fields;
-} && sizeof(typename E::Parameters) == E::fields.size() * sizeof(double) &&
-                 (ContactHook<E> || PopulateHook<E>);
+}
+&&sizeof(typename E::Parameters) == E::fields.size() * sizeof(double) &&
+    (ContactHook<E> || PopulateHook<E>);
 
 }  // namespace repose::engine

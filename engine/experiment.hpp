@@ -42,7 +42,8 @@ struct Trial {
   bool operator==(const Trial&) const = default;
 };
 
-/// One observable as the simulation saw it. One run knows no standard error; it comes from replicates.
+/// One observable as the simulation saw it. One run knows no standard error; it comes from
+/// replicates.
 struct Observation {
   std::string name;
   double value = 0.0;  ///< SI
@@ -83,15 +84,15 @@ using Outcome = std::variant<std::vector<Observation>, Failure>;
 
 /// What a run took. Wall time is not here: the engine has no clock.
 struct Effort {
-  std::uint64_t grains = 0;         ///< grains at the end of the run
-  std::uint64_t inserted = 0;       ///< grains put in
-  std::uint64_t requested = 0;      ///< grains the filling procedure asked for
+  std::uint64_t grains = 0;     ///< grains at the end of the run
+  std::uint64_t inserted = 0;   ///< grains put in
+  std::uint64_t requested = 0;  ///< grains the filling procedure asked for
   std::uint64_t steps = 0;
-  std::uint64_t grain_steps = 0;    ///< sum over the steps of the grains in them
-  std::uint64_t rebuilds = 0;       ///< of the neighbour list
-  double time_step = 0.0;           ///< s
+  std::uint64_t grain_steps = 0;  ///< sum over the steps of the grains in them
+  std::uint64_t rebuilds = 0;     ///< of the neighbour list
+  double time_step = 0.0;         ///< s
   double simulated_seconds = 0.0;
-  double largest_overlap = 0.0;     ///< of two grains or grain and wall, over the radius, 1
+  double largest_overlap = 0.0;  ///< of two grains or grain and wall, over the radius, 1
 };
 
 struct Evaluation {
@@ -103,8 +104,8 @@ struct Evaluation {
 /// All that may vary while the question stays the same.
 struct Run {
   std::stop_token stop = {};
-  FrameSink frames = {};             ///< receives what happened; may be empty
-  double frame_interval = 0.0;       ///< s of simulated time between frames; 0: only the stages' ends
+  FrameSink frames = {};        ///< receives what happened; may be empty
+  double frame_interval = 0.0;  ///< s of simulated time between frames; 0: only the stages' ends
 };
 
 struct ObservableInfo {
@@ -113,12 +114,20 @@ struct ObservableInfo {
   std::string_view meaning;
 };
 
+struct ExperimentText {
+  std::string_view name;
+  std::string_view title;
+  std::string_view summary;
+  std::string_view procedure;  ///< the protocol in a few sentences
+  std::string_view citation;
+};
+
 /// A catalogue entry: made from the experiment's file, read by everyone else.
 struct ExperimentInfo {
   std::string_view name;
   std::string_view title;
   std::string_view summary;
-  std::string_view procedure;  ///< the protocol in a few sentences
+  std::string_view procedure;
   std::string_view citation;
   std::span<const FieldInfo> settings;
   std::span<const ObservableInfo> observables;

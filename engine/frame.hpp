@@ -20,7 +20,7 @@ struct FrameGrain {
 
 /// A wall as a curve in a half plane that is swept round the z axis or along y.
 struct FrameWall {
-  bool revolved = false;            ///< swept round z; else along y
+  bool revolved = false;              ///< swept round z; else along y
   double from_s = 0.0, from_z = 0.0;  ///< m; s is the radius (revolved) or x
   double to_s = 0.0, to_z = 0.0;
   double centre_x = 0.0, centre_y = 0.0;

@@ -14,8 +14,8 @@
 
 namespace repose::engine {
 
-/// Which number: a field "effect.parameter" or "material.property", and between which materials: none
-/// for a global one, one for a material's property, two (in ascending order) for a pair's.
+/// Which number: a field "effect.parameter" or "material.property", and between which materials:
+/// none for a global one, one for a material's property, two (in ascending order) for a pair's.
 struct ParameterKey {
   std::string field;
   std::vector<MaterialId> between;

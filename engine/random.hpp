@@ -1,5 +1,5 @@
-/// Random: counter-based streams. A stream is named by (seed, purpose, index), so what one grain draws
-/// depends neither on the other grains nor on the order of drawing.
+/// Random: counter-based streams. A stream is named by (seed, purpose, index), so what one grain
+/// draws depends neither on the other grains nor on the order of drawing.
 #pragma once
 
 #include <cmath>

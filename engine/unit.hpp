@@ -1,5 +1,5 @@
-/// Unit: a unit accepted at the boundary. Inside there is only SI; an angle counts as a dimension of
-/// its own, so that degrees are refused where a plain number is meant.
+/// Unit: a unit accepted at the boundary. Inside there is only SI; an angle counts as a dimension
+/// of its own, so that degrees are refused where a plain number is meant.
 #pragma once
 
 #include <array>

@@ -9,7 +9,8 @@ struct Motion {
   double speed;  // of approach
 };
 
-/// Overlap and time scaled so that the law has no constant but c: x'' = -max(0, x^1.5 + c x^.25 x').
+/// Overlap and time scaled so that the law has no constant but c: x'' = -max(0, x^1.5 + c x^.25
+/// x').
 Motion change(const Motion& m, double c) {
   const double x = m.overlap > 0.0 ? m.overlap : 0.0;
   const double root = std::sqrt(x);

@@ -6,11 +6,13 @@
 ///   d  overlap, m      v  speed of approach, m/s      m  reduced mass, kg
 ///   c  number found by integrating this very law, the cut at zero included, until the rebound is e
 ///
-/// The tangential dashpot is the normal one times sqrt(4 G* / E*), the root of the ratio of tangential
-/// to normal stiffness.
+/// The tangential dashpot is the normal one times sqrt(4 G* / E*), the root of the ratio of
+/// tangential to normal stiffness.
 ///
-/// Source: Tsuji, Tanaka & Ishida 1992, Powder Technology 71, 239-250 (form of the dashpot); Schwager &
-///         Poeschel 2007, Granular Matter 9, 465-469 (contacts end when the force does, not the overlap).
+/// Source: Tsuji, Tanaka & Ishida 1992, Powder Technology 71, 239-250 (form of the dashpot);
+/// Schwager &
+///         Poeschel 2007, Granular Matter 9, 465-469 (contacts end when the force does, not the
+///         overlap).
 /// Null:   e = 1: c = 0, the dashpot is exactly zero.
 #pragma once
 

@@ -4,11 +4,12 @@
 ///
 ///   w  spin i - spin j without the twist, rad/s     R*  reduced radius, m     F  elastic force, N
 ///
-/// R* is half a grain's radius between equal grains and the whole radius at a wall; codes whose couple
-/// uses the grain's own radius need half the coefficient between grains. The couple keeps its size at
-/// the slightest rolling, so a bed at rest trembles below the threshold of rest.
+/// R* is half a grain's radius between equal grains and the whole radius at a wall; codes whose
+/// couple uses the grain's own radius need half the coefficient between grains. The couple keeps
+/// its size at the slightest rolling, so a bed at rest trembles below the threshold of rest.
 ///
-/// Source: Zhou, Wright, Yang, Xu & Yu 1999, Physica A 269, 536-553; model A of Ai, Chen, Rotter & Ooi
+/// Source: Zhou, Wright, Yang, Xu & Yu 1999, Physica A 269, 536-553; model A of Ai, Chen, Rotter &
+/// Ooi
 ///         2011, Powder Technology 206, 269-282.
 /// Null:   mu_r = 0: the couple is exactly zero.
 #pragma once
@@ -29,7 +30,8 @@ struct RollingResistance {
   static constexpr EffectText text{
       .name = "rolling_resistance",
       .title = "Rolling resistance",
-      .summary = "Grains that are not perfect spheres resist rolling, with a couple of constant size.",
+      .summary =
+          "Grains that are not perfect spheres resist rolling, with a couple of constant size.",
       .citation = "Zhou et al. 1999, Physica A 269, 536-553",
   };
   static constexpr std::array fields{

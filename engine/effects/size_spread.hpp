@@ -6,8 +6,8 @@
 /// keeps the smallest grain, on which the time step depends, at x = 1 - 2 s. By VOLUME, since the
 /// spread of seeds is measured by weighing them.
 ///
-/// Source: Boac et al. 2010, Trans. ASABE 53(4), 1201-1216, standard deviation factor of kernel mass.
-/// Null:   s = 0: every draw is exactly 1.
+/// Source: Boac et al. 2010, Trans. ASABE 53(4), 1201-1216, standard deviation factor of kernel
+/// mass. Null:   s = 0: every draw is exactly 1.
 #pragma once
 
 #include <array>

@@ -6,10 +6,12 @@
 ///   a  radius of the contact patch, m    G*  reduced shear modulus, Pa  F  grip force, N
 ///   g  tangential dashpot, N s/m
 ///
-/// The displacement turns with the contact: it is projected on the new tangent plane at its old length.
-/// When the cap acts, the displacement is set back so that spring and dashpot together meet it.
+/// The displacement turns with the contact: it is projected on the new tangent plane at its old
+/// length. When the cap acts, the displacement is set back so that spring and dashpot together meet
+/// it.
 ///
-/// Source: Mindlin 1949, J. Appl. Mech. 16, 259-268 (stiffness without slip); Cundall & Strack 1979,
+/// Source: Mindlin 1949, J. Appl. Mech. 16, 259-268 (stiffness without slip); Cundall & Strack
+/// 1979,
 ///         Geotechnique 29, 47-65 (incremental spring with cap).
 /// Null:   mu = 0: the cap is zero, so the force is exactly zero.
 #pragma once

@@ -1,0 +1,90 @@
+/// ContactList: who may touch whom, and the history of those who do.
+///
+/// Candidates are pairs nearer than their skins; they stay valid until a grain has moved by its own
+/// skin. A grain's skin grows with its speed, so that a falling stream does not force the settled
+/// bed to be searched again and again. History lives beside its candidate and is carried across
+/// rebuilds by the permanent ids; of two grains, the one with the smaller id is end i, whatever
+/// their rows.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/boundary.hpp"
+#include "engine/contact_block.hpp"
+#include "engine/grains.hpp"
+
+namespace repose::engine {
+
+/// Candidates of one kind, and what is remembered of each.
+struct Candidates {
+  std::vector<std::uint32_t> i;      ///< row of end i
+  std::vector<std::uint32_t> j;      ///< row of end j, or surface
+  std::vector<std::uint8_t> closed;  ///< whether the contact was closed in the last step
+  std::vector<double> history;       ///< history_columns per candidate
+
+  [[nodiscard]] std::size_t size() const { return i.size(); }
+};
+
+class ContactList {
+ public:
+  explicit ContactList(int history_columns) : history_columns_(history_columns) {}
+
+  /// Sorts the grains by cell and finds all candidates anew. `period` is 0 where not periodic;
+  /// `horizon` is the time (s) a grain may fly before its skin is used up.
+  void rebuild(Grains& grains,
+               std::span<const Surface> surfaces,
+               const Vec3& period,
+               double horizon);
+
+  /// Whether some grain has moved by its skin since the last rebuild.
+  [[nodiscard]] bool outlived(const Grains& grains) const;
+
+  /// Follows rows that were taken out: new_row[k] is where row k went, or `gone`.
+  void renumber(const std::vector<std::uint32_t>& new_row, std::uint32_t gone);
+
+  [[nodiscard]] int history_columns() const { return history_columns_; }
+
+  Candidates pairs;
+  Candidates walls;
+
+ private:
+  struct Anchor {
+    double x, y, z;
+    double skin_squared;
+  };
+
+  /// Histories of the closed contacts by id of end i, while the rows are re-ordered.
+  struct Memory {
+    std::vector<std::uint32_t> start;  ///< first entry of each id
+    std::vector<std::uint32_t> j;      ///< id of end j, or surface
+    std::vector<double> history;
+  };
+
+  [[nodiscard]] Memory remember(const Candidates& candidates,
+                                const Grains& grains,
+                                Partner partner) const;
+  void recall(const Memory& memory,
+              Candidates& candidates,
+              const Grains& grains,
+              Partner partner) const;
+  void sort_by_cell(Grains& grains, const Vec3& period);
+  void find_pairs(const Grains& grains, const Vec3& period);
+  void find_walls(const Grains& grains, std::span<const Surface> surfaces);
+
+  struct Grid {
+    Vec3 low, high;
+    double edge = 1.0;
+    int nx = 1, ny = 1, nz = 1;
+    std::vector<std::uint32_t> start;  ///< first row of each cell
+  };
+
+  int history_columns_;
+  Grid grid_;
+  std::vector<double> skins_;
+  std::vector<Anchor> anchors_;
+  std::vector<std::uint32_t> cell_of_;
+};
+
+}  // namespace repose::engine

@@ -1,0 +1,240 @@
+#include "engine/session.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/catalogue.hpp"
+
+namespace repose::engine {
+
+namespace {
+
+/// Steps between looks at the stop token, the room and the plausibility of the state.
+constexpr std::uint64_t look_every = 64;
+/// A step longer than this share of the Rayleigh time is not stable in a dense bed.
+constexpr double stable_share = 0.5;
+/// A collision must be resolved by at least this many steps.
+constexpr double steps_per_impact = 6.0;
+/// Overlap over radius beyond which the run is not physics. Soft grains reach 0.2 on hard impact.
+constexpr double absurd_overlap = 0.7;
+
+std::string number(double value) {
+  std::string text = std::to_string(value);
+  if (std::abs(value) < 1e-3 || std::abs(value) >= 1e6) {
+    // std::to_string has no exponents; three figures are enough for a message.
+    const int exponent =
+        value == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value))));
+    text = std::to_string(value / std::pow(10.0, exponent));
+    text = text.substr(0, text.find('.') + 3) + "e" + std::to_string(exponent);
+  }
+  return text;
+}
+
+std::string out_of_bounds(std::string_view name, double value, const FieldInfo& field) {
+  if (value >= field.lower && value <= field.upper) return {};
+  return std::string(name) + " = " + number(value) + " (SI) must lie in " + number(field.lower) +
+         " to " + number(field.upper);
+}
+
+std::string check_parameters(const ParameterSet& parameters) {
+  for (const auto& [key, value] : parameters) {
+    const ParameterInfo* info = find_parameter(key.field);
+    if (info == nullptr) return "there is no parameter " + key.field;
+    if (key.between.size() != materials_of(info->scope)) {
+      return to_string(key) + " must name " + std::to_string(materials_of(info->scope)) +
+             " material(s)";
+    }
+    if (std::string problem = out_of_bounds(to_string(key), value, *info->field);
+        !problem.empty()) {
+      return problem;
+    }
+  }
+  for (const std::string_view needed : {"density", "diameter", "shear_modulus", "poisson_ratio"}) {
+    const ParameterKey key{std::string(Material::name) + "." + std::string(needed),
+                           {MaterialId::grain}};
+    if (!parameters.get(key)) return to_string(key) + " must be given";
+  }
+  for (const std::string_view needed : {"shear_modulus", "poisson_ratio"}) {
+    const ParameterKey key{std::string(Material::name) + "." + std::string(needed),
+                           {MaterialId::wall}};
+    if (!parameters.get(key)) return to_string(key) + " must be given";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string check(const ExperimentInfo& info, const Trial& trial) {
+  if (std::string problem = check_parameters(trial.parameters); !problem.empty()) return problem;
+  for (const auto& [name, value] : trial.experiment.settings) {
+    const auto field = std::ranges::find(info.settings, name, &FieldInfo::name);
+    if (field == info.settings.end()) {
+      return "the experiment " + std::string(info.name) + " has no setting " + name;
+    }
+    if (std::string problem = out_of_bounds(name, value, *field); !problem.empty()) return problem;
+  }
+  return {};
+}
+
+Session::Session(const Trial& trial, const Run& run)
+    : trial_(trial),
+      run_(run),
+      model_(trial.parameters),
+      spread_(parameters_of<effects::SizeSpread>(trial.parameters, {MaterialId::grain})) {
+  const double mean = 0.5 * grain().diameter;
+  smallest_radius_ = mean * std::cbrt(effects::SizeSpread::smallest(spread_));
+  largest_radius_ = mean * std::cbrt(effects::SizeSpread::largest(spread_));
+}
+
+double Session::grain_mass() const {
+  return unit::pi / 6.0 * std::pow(grain().diameter, 3.0) * grain().density;
+}
+
+double Session::impact_time_at(double speed) const {
+  const GrainRow least = sphere(smallest_radius_, grain().density);
+  const auto time = [&](MaterialId partner, double share) {
+    const double modulus = model_.law(partner).elastic.modulus;
+    return impact_time(share * mass(least), share * least.radius, modulus, speed);
+  };
+  return std::min(time(MaterialId::grain, 0.5), time(MaterialId::wall, 1.0));
+}
+
+bool Session::set_up(const Apparatus& apparatus) {
+  apparatus_ = apparatus;
+  const double shortest = impact_time_at(apparatus.fastest);
+  const double stable = std::min(stable_share * rayleigh(), shortest / steps_per_impact);
+  const double time_step = apparatus.time_step_share * rayleigh();
+  if (time_step > stable) {
+    return fail(FailureKind::time_step_too_large,
+                "time_step of " + number(apparatus.time_step_share) +
+                    " Rayleigh times is not stable; at most " + number(stable / rayleigh()) +
+                    " (half the Rayleigh time, and " + number(steps_per_impact) +
+                    " steps to a collision at " + number(apparatus.fastest) + " m/s)");
+  }
+  world_.emplace(model_, WorldOptions{.time_step = time_step, .period = apparatus.period});
+  world_->change_surfaces() = apparatus.walls;
+  return true;
+}
+
+GrainRow Session::next_grain() const {
+  Random random(trial_.seed, Purpose::grain_size, world_->inserted());
+  const double volume = effects::SizeSpread::populate(spread_, random);
+  return sphere(0.5 * grain().diameter * std::cbrt(volume), grain().density);
+}
+
+bool Session::fail(FailureKind kind, const std::string& message) {
+  if (!failure_) failure_ = Failure{kind, message, world_ ? world_->time() : 0.0};
+  return false;
+}
+
+Failure Session::failure() const {
+  return failure_.value_or(Failure{FailureKind::not_observed, "the protocol ended early", 0.0});
+}
+
+bool Session::check() {
+  if (run_.stop.stop_requested()) return fail(FailureKind::cancelled, "asked to stop");
+  const Vec3 low = apparatus_.low;
+  const Vec3 high = apparatus_.high;
+  left_ += world_->remove([&](const GrainRow& g) {
+    // Written so that a coordinate that is no number stays in and is found below.
+    return g.x < low.x || g.x > high.x || g.y < low.y || g.y > high.y || g.z < low.z ||
+           g.z > high.z;
+  });
+  if (!std::isfinite(world_->kinetic_energy())) {
+    return fail(FailureKind::unstable, "a grain's motion is no longer a number");
+  }
+  const double overlap = world_->largest_overlap();
+  largest_overlap_ = std::max(largest_overlap_, overlap);
+  if (overlap > absurd_overlap) {
+    return fail(FailureKind::unstable,
+                "an overlap of " + number(overlap) +
+                    " radii: the time step is too large or the "
+                    "grains are too soft for these speeds");
+  }
+  return true;
+}
+
+bool Session::steps(std::uint64_t count) {
+  if (failure_) return false;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    world_->step();
+    if (world_->steps() % look_every == 0 && !check()) return false;
+    if (run_.frame_interval > 0.0 && run_.frames && world_->time() >= next_frame_) {
+      emit("running");
+      next_frame_ += run_.frame_interval;
+    }
+  }
+  return true;
+}
+
+bool Session::run_for(double seconds) {
+  return steps(static_cast<std::uint64_t>(std::llround(seconds / world_->time_step())));
+}
+
+bool Session::until(const std::function<bool()>& condition,
+                    double watch,
+                    double limit,
+                    FailureKind kind,
+                    const std::string& message) {
+  const double start = world_->time();
+  const auto stride =
+      static_cast<std::uint64_t>(std::max(1.0, std::round(watch / world_->time_step())));
+  while (!condition()) {
+    if (world_->time() - start > limit) return fail(kind, message);
+    if (!steps(stride)) return false;
+  }
+  return true;
+}
+
+bool Session::rest(double limit) {
+  constexpr double hold = 0.05;   // s, experiments' definition of rest
+  constexpr double watch = 2e-3;  // s
+  const double quiet =
+      std::max(1e-9, 1e-4 * grain_mass() * norm(world_->gravity()) * grain().diameter);
+  double since = world_->time();
+  return until(
+      [&] {
+        const auto grains = static_cast<double>(std::max<std::size_t>(1, world_->grains().size()));
+        if (world_->kinetic_energy() / grains >= quiet) since = world_->time();
+        return world_->time() - since >= hold;
+      },
+      watch,
+      limit,
+      FailureKind::did_not_rest,
+      "the grains were still moving after " + number(limit) + " s");
+}
+
+void Session::stage(std::string_view name) { emit(name); }
+
+void Session::emit(std::string_view stage) {
+  if (!run_.frames) return;
+  const Grains& grains = world_->grains();
+  frame_grains_.clear();
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    const GrainRow& g = grains.rows[k];
+    frame_grains_.push_back({g.centre(), g.velocity(), g.radius, grains.ids[k]});
+  }
+  std::ranges::sort(frame_grains_, {}, &FrameGrain::id);
+  const std::vector<FrameWall> walls = outline(world_->surfaces());
+  run_.frames(Frame{.stage = stage,
+                    .time = world_->time(),
+                    .gravity = world_->gravity(),
+                    .period = world_->period(),
+                    .grains = frame_grains_,
+                    .walls = walls});
+}
+
+Effort Session::effort() const {
+  if (!world_) return {};
+  return {.grains = world_->grains().size(),
+          .inserted = world_->inserted(),
+          .requested = requested_,
+          .steps = world_->steps(),
+          .grain_steps = world_->grain_steps(),
+          .rebuilds = world_->rebuilds(),
+          .time_step = world_->time_step(),
+          .simulated_seconds = world_->time(),
+          .largest_overlap = largest_overlap_};
+}
+
+}  // namespace repose::engine

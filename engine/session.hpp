@@ -1,0 +1,142 @@
+/// Session: one experiment at work: its world, its limits, and what may end it early. An
+/// experiment's protocol reads as calls on a session; each call that can fail returns false, and
+/// failure() says why.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/catalogue.hpp"
+#include "engine/experiment.hpp"
+#include "engine/result.hpp"
+#include "engine/world.hpp"
+
+namespace repose::engine {
+
+/// What an experiment sets up before the first grain.
+struct Apparatus {
+  std::vector<Surface> walls;
+  Vec3 period;                   ///< m; 0 where not periodic
+  Vec3 low, high;                ///< corners of the room, m; grains that leave it are removed
+  double time_step_share = 0.2;  ///< time step over the Rayleigh time of the smallest grain
+  double fastest = 1.0;          ///< speed at which grains may meet, m/s
+};
+
+class Session {
+ public:
+  Session(const Trial& trial, const Run& run);
+
+  /// Makes the world; refuses a time step that is not stable.
+  bool set_up(const Apparatus& apparatus);
+
+  [[nodiscard]] World& world() { return *world_; }
+  [[nodiscard]] const Material& grain() const { return model_.material(MaterialId::grain); }
+  [[nodiscard]] double largest_radius() const { return largest_radius_; }
+  [[nodiscard]] std::uint64_t seed() const { return trial_.seed; }
+  /// Rayleigh time of the smallest grain, s.
+  [[nodiscard]] double rayleigh() const { return rayleigh_time(smallest_radius_, grain()); }
+  /// How long the shortest collision at that speed lasts, s.
+  [[nodiscard]] double impact_time_at(double speed) const;
+  /// Mass of the mean grain, kg.
+  [[nodiscard]] double grain_mass() const;
+
+  /// A new grain of the population: its size depends on the seed and its id alone.
+  [[nodiscard]] GrainRow next_grain() const;
+
+  /// Counts grains that a filling procedure wanted to put in.
+  void request(std::uint64_t grains) { requested_ += grains; }
+
+  /// Steps until the condition holds (true) or the run must end (false). The condition is asked
+  /// every `watch` seconds; reaching `limit` (s) is a failure of that kind with that message.
+  bool until(const std::function<bool()>& condition,
+             double watch,
+             double limit,
+             FailureKind kind,
+             const std::string& message);
+  bool run_for(double seconds);
+  /// Waits until the bed is at rest: mean kinetic energy per grain below max(1e-9 J, 1e-4 m g d)
+  /// for 0.05 s.
+  bool rest(double limit);
+
+  /// Marks the end of a part of the protocol: a frame with that name.
+  void stage(std::string_view name);
+
+  /// Grains that left the room so far.
+  [[nodiscard]] std::uint64_t left_the_room() const { return left_; }
+
+  bool fail(FailureKind kind, const std::string& message);
+  [[nodiscard]] Failure failure() const;
+  [[nodiscard]] Effort effort() const;
+
+ private:
+  bool steps(std::uint64_t count);
+  bool check();
+  void emit(std::string_view stage);
+
+  const Trial& trial_;
+  const Run& run_;
+  ContactModel model_;
+  effects::SizeSpread::Parameters spread_;
+  double smallest_radius_;
+  double largest_radius_;
+  Apparatus apparatus_;
+  std::optional<World> world_;
+  std::optional<Failure> failure_;
+  std::uint64_t requested_ = 0;
+  std::uint64_t left_ = 0;
+  double largest_overlap_ = 0.0;
+  double next_frame_ = 0.0;
+  std::vector<FrameGrain> frame_grains_;
+};
+
+/// What an experiment returns: the values of its observables in the order of its table, or nothing
+/// when the session failed.
+using Readings = std::optional<std::vector<double>>;
+
+/// Problems of a trial that need no run to be seen; empty when there are none.
+std::string check(const ExperimentInfo& info, const Trial& trial);
+
+/// A catalogue entry from the experiment's file.
+template <class E>
+constexpr ExperimentInfo describe(std::span<const FieldInfo> settings,
+                                  Evaluation (*run)(const Trial&, const Run&)) {
+  return {E::text.name,
+          E::text.title,
+          E::text.summary,
+          E::text.procedure,
+          E::text.citation,
+          settings,
+          E::observables,
+          run};
+}
+
+/// Runs a protocol: checks, settings, session, answer.
+template <class E>
+Evaluation conduct(const Trial& trial, const Run& run) {
+  Evaluation evaluation{trial, {}, {}};
+  const ExperimentInfo& info = *find_experiment(E::text.name);
+  if (std::string problem = check(info, trial); !problem.empty()) {
+    evaluation.outcome = Failure{FailureKind::bad_input, std::move(problem), 0.0};
+    return evaluation;
+  }
+  typename E::Settings settings{};
+  const std::vector<double> values = resolved_settings(info, trial.experiment);
+  for (std::size_t i = 0; i < E::fields.size(); ++i) settings.*E::fields[i].member = values[i];
+  Session session(trial, run);
+  const Readings readings = E::run(settings, session);
+  evaluation.effort = session.effort();
+  if (!readings) {
+    evaluation.outcome = session.failure();
+    return evaluation;
+  }
+  std::vector<Observation> observations;
+  for (std::size_t i = 0; i < E::observables.size(); ++i) {
+    observations.push_back({std::string(E::observables[i].name), (*readings)[i]});
+  }
+  evaluation.outcome = std::move(observations);
+  return evaluation;
+}
+
+}  // namespace repose::engine

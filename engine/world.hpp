@@ -1,0 +1,99 @@
+/// World: grains, walls and gravity, advanced step by step. Single-threaded, so equal input gives
+/// equal bits.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "engine/boundary.hpp"
+#include "engine/contact_list.hpp"
+#include "engine/contact_model.hpp"
+#include "engine/grains.hpp"
+
+namespace repose::engine {
+
+/// Rayleigh time of a sphere: how long a shear wave takes over its surface (Sheng, Lawrence,
+/// Briscoe & Thornton 2004, Eng. Comput. 21, 304-317): pi R sqrt(rho / G) / (0.1631 nu + 0.8766),
+/// s.
+double rayleigh_time(double radius, const Material& material);
+
+/// How long two elastic spheres touch that meet at that speed (Johnson 1985, section 11.4):
+/// 2.868 (m*^2 / (R* E*^2 v))^(1/5), s.
+double impact_time(double mass, double radius, double modulus, double speed);
+
+struct WorldOptions {
+  double time_step = 0.0;  ///< s
+  Vec3 period;             ///< m; 0 where not periodic; z is never
+  Vec3 gravity{0.0, 0.0, -9.81};
+};
+
+class World {
+ public:
+  World(ContactModel model, const WorldOptions& options);
+
+  /// Puts a grain in; its id is the number of grains put in before it.
+  std::uint32_t add(const GrainRow& grain);
+  /// Takes out every grain that the condition names; returns how many.
+  std::size_t remove(const std::function<bool(const GrainRow&)>& condition);
+
+  /// Walls may be changed between steps through this.
+  std::vector<Surface>& change_surfaces();
+  [[nodiscard]] const std::vector<Surface>& surfaces() const { return surfaces_; }
+  /// From now on gravity turns about y, from -z towards +x: a box tilting the other way, rad/s.
+  void turn_gravity(double rate);
+  [[nodiscard]] const Vec3& gravity() const { return gravity_; }
+
+  void step();
+
+  [[nodiscard]] const Grains& grains() const { return grains_; }
+  /// Mutable access for tests and experiments that set a grain's motion.
+  GrainRow& row(std::size_t index) { return grains_.rows[index]; }
+  [[nodiscard]] const ContactModel& model() const { return model_; }
+  [[nodiscard]] const Vec3& period() const { return options_.period; }
+  [[nodiscard]] double time() const { return time_; }
+  [[nodiscard]] double time_step() const { return options_.time_step; }
+  [[nodiscard]] std::uint64_t steps() const { return steps_; }
+  [[nodiscard]] std::uint64_t grain_steps() const { return grain_steps_; }
+  [[nodiscard]] std::uint64_t rebuilds() const { return rebuilds_; }
+  [[nodiscard]] std::uint64_t inserted() const { return inserted_; }
+  /// Contacts closed in the last step, walls included.
+  [[nodiscard]] std::size_t contacts() const { return closed_; }
+  [[nodiscard]] const Candidates& pairs() const { return list_.pairs; }
+
+  /// Kinetic energy, rotation included, J. Not a number once the run has gone wrong.
+  [[nodiscard]] double kinetic_energy() const;
+  /// Largest overlap over radius among the contacts of the last step.
+  [[nodiscard]] double largest_overlap() const;
+  /// Bytes held for each grain, contacts and their history included.
+  [[nodiscard]] double bytes_per_grain() const;
+
+ private:
+  void rebuild();
+  void find_closed_pairs();
+  void find_closed_walls();
+  void push_pairs();
+  void push_walls();
+  void integrate();
+
+  ContactModel model_;
+  WorldOptions options_;
+  Vec3 gravity_;
+  double turn_rate_ = 0.0;
+  double turn_start_ = 0.0;
+  Grains grains_;
+  std::vector<Surface> surfaces_;
+  ContactList list_;
+  std::vector<std::uint32_t> closed_pairs_;                 ///< candidates that touch now
+  std::array<std::vector<std::uint32_t>, 2> closed_walls_;  ///< the same by the wall's material
+  bool stale_ = true;                                       ///< the list must be made anew
+  double time_ = 0.0;
+  std::uint64_t steps_ = 0;
+  std::uint64_t grain_steps_ = 0;
+  std::uint64_t rebuilds_ = 0;
+  std::uint64_t inserted_ = 0;
+  std::size_t closed_ = 0;
+};
+
+}  // namespace repose::engine
