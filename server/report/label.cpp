@@ -1,0 +1,74 @@
+#include "server/report/label.hpp"
+
+#include <algorithm>
+
+#include "engine/catalogue.hpp"
+#include "server/report/number_text.hpp"
+
+namespace repose::server {
+
+namespace {
+
+std::string words(std::string_view name) {
+  std::string text(name);
+  std::ranges::replace(text, '_', ' ');
+  return text;
+}
+
+}  // namespace
+
+std::string parameter_label(const engine::ParameterKey& key) {
+  const std::string_view field = key.field;
+  const std::size_t point = field.find('.');
+  std::string text = words(field.substr(0, point));
+  const std::string_view property = point == field.npos ? "" : field.substr(point + 1);
+  if (text == engine::Material::name) {
+    text = words(property);
+  } else if (!property.empty() && property != "coefficient") {
+    text += " " + words(property);
+  }
+  const char* separator = ", ";
+  for (const engine::MaterialId id : key.between) {
+    text += separator;
+    text += engine::material_names[static_cast<std::size_t>(id)];
+    separator = "-";
+  }
+  return text;
+}
+
+std::string measurement_label(const calibrator::Measurement& measurement) {
+  return words(measurement.experiment.name) + ": " + words(measurement.observable);
+}
+
+std::string settings_label(const engine::Experiment& experiment) {
+  const engine::ExperimentInfo* info = engine::find_experiment(experiment.name);
+  std::string text;
+  for (const auto& [name, value] : experiment.settings) {
+    if (!text.empty()) text += ", ";
+    text += words(name) + " ";
+    const engine::FieldInfo* field = nullptr;
+    if (info != nullptr) {
+      const auto found = std::ranges::find(info->settings, name, &engine::FieldInfo::name);
+      if (found != info->settings.end()) field = &*found;
+    }
+    const auto choice = static_cast<std::size_t>(std::max(0.0, value));
+    if (field != nullptr && choice < field->choices.size()) {
+      text += field->choices[choice];
+    } else {
+      const engine::Unit unit = field != nullptr ? field->unit : engine::unit::one;
+      text += number_text(value / unit.factor) + unit_suffix(unit);
+    }
+  }
+  return text;
+}
+
+engine::Unit parameter_unit(const calibrator::Calibration& calibration,
+                            const engine::ParameterKey& key) {
+  const auto& free = calibration.free;
+  const auto given = std::ranges::find(free, key, &calibrator::FreeParameter::key);
+  if (given != free.end()) return given->unit;
+  const engine::ParameterInfo* info = engine::find_parameter(key.field);
+  return info != nullptr ? info->field->unit : engine::unit::one;
+}
+
+}  // namespace repose::server

@@ -1,0 +1,184 @@
+#include "server/report/words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include "server/report/label.hpp"
+#include "server/report/number_text.hpp"
+
+namespace repose::server {
+
+using calibrator::Calibration;
+using calibrator::Direction;
+using calibrator::Fit;
+using calibrator::FittedParameter;
+using calibrator::Measurement;
+using calibrator::Prediction;
+using calibrator::Role;
+using calibrator::StopReason;
+
+namespace {
+
+/// "a", "a and b", "a, b and c"
+std::string enumerate(const std::vector<std::string>& items) {
+  std::string text;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) text += i + 1 == items.size() ? " and " : ", ";
+    text += items[i];
+  }
+  return text;
+}
+
+std::vector<const Prediction*> predictions_of(const Calibration& calibration,
+                                              const Fit& fit,
+                                              Role role) {
+  std::vector<const Prediction*> chosen;
+  for (const Prediction& prediction : fit.predictions) {
+    if (calibration.measurements.at(prediction.measurement).role == role) {
+      chosen.push_back(&prediction);
+    }
+  }
+  return chosen;
+}
+
+std::ptrdiff_t within(const std::vector<const Prediction*>& predictions, double errors) {
+  return std::ranges::count_if(
+      predictions, [&](const Prediction* prediction) { return std::abs(prediction->z) <= errors; });
+}
+
+std::string count_of(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string all_met(std::size_t count, const std::string& within_what) {
+  if (count == 1) return "The measurement is met within " + within_what + ".";
+  return "All " + count_of(count, "measurement") + " are met within " + within_what + ".";
+}
+
+std::string missed(const Calibration& calibration, const std::vector<const Prediction*>& fitted) {
+  std::vector<std::string> names;
+  for (const Prediction* prediction : fitted) {
+    if (std::abs(prediction->z) <= 2.0) continue;
+    const std::string z =
+        std::isfinite(prediction->z) ? "z = " + fixed_text(prediction->z, 1) : "no prediction";
+    names.push_back(measurement_label(calibration.measurements.at(prediction->measurement)) + " (" +
+                    z + ")");
+  }
+  return std::to_string(names.size()) + " of " + count_of(fitted.size(), "measurement") +
+         (names.size() == 1 ? " is" : " are") +
+         " missed by more than two standard errors: " + enumerate(names) + ".";
+}
+
+std::string interval_text(const Calibration& calibration, std::size_t index, const Fit& fit) {
+  const FittedParameter& fitted = fit.parameters[index];
+  const engine::Unit unit = calibration.free.at(index).unit;
+  return number_text(fitted.lower / unit.factor, 3) + " to " +
+         number_text(fitted.upper / unit.factor, 3) + unit_suffix(unit);
+}
+
+/// What may be changed together without a measurement telling.
+std::string open_direction(const Calibration& calibration, const Direction& direction) {
+  constexpr double counts = 0.35;  // of a unit vector: smaller parts are not worth a word
+  std::vector<std::string> same, opposite;
+  double sign = 0.0;
+  for (std::size_t i = 0; i < direction.components.size(); ++i) {
+    const double size = direction.components[i];
+    if (std::abs(size) < counts) continue;
+    if (sign == 0.0) sign = size;
+    (size * sign > 0.0 ? same : opposite).push_back(parameter_label(calibration.free.at(i).key));
+  }
+  if (same.size() + opposite.size() < 2) return {};
+  if (opposite.empty()) {
+    return "The data cannot tell " + enumerate(same) +
+           " apart: less of one makes up for more of another.";
+  }
+  return "The data cannot tell apart more of " + enumerate(same) + " together with more of " +
+         enumerate(opposite) + ".";
+}
+
+}  // namespace
+
+Verdict verdict(const Calibration& calibration, const Fit& fit) {
+  const auto fitted = predictions_of(calibration, fit, Role::fit);
+  const auto all = static_cast<std::ptrdiff_t>(fitted.size());
+  if (fitted.empty() || fit.stop == StopReason::failed) return Verdict::unfinished;
+  if (within(fitted, 1.0) == all) return Verdict::hit;
+  return within(fitted, 2.0) == all ? Verdict::met : Verdict::missed;
+}
+
+std::string headline(const Calibration& calibration, const Fit& fit) {
+  const auto fitted = predictions_of(calibration, fit, Role::fit);
+  switch (verdict(calibration, fit)) {
+    case Verdict::hit:
+      return all_met(fitted.size(), "one standard error");
+    case Verdict::met:
+      return all_met(fitted.size(), "two standard errors");
+    case Verdict::missed:
+      return missed(calibration, fitted);
+    case Verdict::unfinished:
+      break;
+  }
+  return "There is no confirmed prediction.";
+}
+
+std::string stop_sentence(StopReason stop) {
+  switch (stop) {
+    case StopReason::hit:
+      return "The search stopped because fresh replicates are within one standard error of every "
+             "measurement.";
+    case StopReason::no_better:
+      return "The search stopped because nothing better is within the emulator's reach.";
+    case StopReason::implausible:
+      return "The search stopped because no parameter set within the bounds comes within three "
+             "standard errors of every measurement: a physical effect is missing, a bound is too "
+             "narrow, or a standard error is too small.";
+    case StopReason::budget:
+      return "The search stopped because the budget is spent.";
+    case StopReason::cancelled:
+      return "The search was cancelled before it was finished.";
+    case StopReason::failed:
+      return "The search stopped because too few evaluations succeeded to learn from.";
+  }
+  return {};
+}
+
+std::vector<std::string> learnt_sentences(const Calibration& calibration, const Fit& fit) {
+  std::vector<std::string> sentences, determined, open;
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    const std::string label = parameter_label(fit.parameters[i].key);
+    if (fit.parameters[i].determined) determined.push_back(label);
+    if (!fit.parameters[i].determined) {
+      open.push_back(label + " (anything from " + interval_text(calibration, i, fit) + ")");
+    }
+  }
+  if (!determined.empty())
+    sentences.push_back("Determined by the data: " + enumerate(determined) + ".");
+  if (!open.empty()) {
+    sentences.push_back("Not determined by the data: " + enumerate(open) +
+                        (open.size() == 1 ? ". Its best value is one of many that do as well."
+                                          : ". Their best values are one choice of many that do as "
+                                            "well."));
+  }
+  if (fit.directions.size() > 1) {
+    const auto learnt = static_cast<std::size_t>(
+        std::ranges::count_if(fit.directions, [](const Direction& d) { return d.learnt; }));
+    sentences.push_back(count_of(learnt, "combination") + " of the " +
+                        count_of(fit.directions.size(), "free parameter") +
+                        (learnt == 1 ? " was" : " were") + " learnt.");
+    for (const Direction& direction : fit.directions) {
+      std::string sentence = direction.learnt ? "" : open_direction(calibration, direction);
+      if (!sentence.empty()) sentences.push_back(std::move(sentence));
+    }
+  }
+  const auto held_out = predictions_of(calibration, fit, Role::held_out);
+  if (!held_out.empty()) {
+    sentences.push_back("Set aside and predicted within two standard errors: " +
+                        std::to_string(within(held_out, 2.0)) + " of " +
+                        count_of(held_out.size(), "measurement") + ".");
+  }
+  return sentences;
+}
+
+}  // namespace repose::server
