@@ -12,8 +12,9 @@ namespace repose::calibrator {
 
 using ProgressObserver = std::function<void(const Progress&)>;
 
-/// Pure: equal calibrations and equally answering evaluators give equal bits, so a resumed calibration
-/// is a replay whose evaluator answers from the store. Throws only what the evaluator throws.
+/// Pure: equal calibrations and equally answering evaluators give equal bits, so a resumed
+/// calibration is a replay whose evaluator answers from the store. Throws only what the evaluator
+/// throws.
 Fit calibrate(const Calibration& calibration,
               const Evaluator& evaluator,
               std::stop_token stop = {},

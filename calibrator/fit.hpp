@@ -1,5 +1,5 @@
-/// Fit: the answer to a Calibration. Best values with intervals, what the data did not determine, the
-/// misfit of every measurement, and why the search stopped.
+/// Fit: the answer to a Calibration. Best values with intervals, what the data did not determine,
+/// the misfit of every measurement, and why the search stopped.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ struct FittedParameter {
   double upper = 0.0;           ///< SI
   bool lower_at_bound = false;  ///< the interval ends at the search bound, not within
   bool upper_at_bound = false;
-  double learnt = 0.0;          ///< 1 - posterior variance / prior variance, in unit coordinates
-  bool determined = false;      ///< the interval ends within the bounds on both sides
+  double learnt = 0.0;      ///< 1 - posterior variance / prior variance, in unit coordinates
+  bool determined = false;  ///< the interval ends within the bounds on both sides
 };
 
 /// A direction in the (unit) space of the free parameters, and how well the data fix it.
@@ -32,33 +32,33 @@ struct Direction {
 
 /// One measurement against the confirmed prediction.
 struct Prediction {
-  std::size_t measurement = 0;       ///< index into Calibration::measurements
-  double predicted = 0.0;            ///< SI; mean of the confirming replicates
-  double standard_error = 0.0;       ///< SI; of that mean
-  int replicates = 0;                ///< that confirmed
-  double scatter = 0.0;              ///< SI; standard deviation of one replicate
-  double emulated = 0.0;             ///< SI; what the emulator had promised
-  double emulated_deviation = 0.0;   ///< SI; its standard deviation
-  double z = 0.0;                    ///< (predicted - measured) / combined standard uncertainty
+  std::size_t measurement = 0;      ///< index into Calibration::measurements
+  double predicted = 0.0;           ///< SI; mean of the confirming replicates
+  double standard_error = 0.0;      ///< SI; of that mean
+  int replicates = 0;               ///< that confirmed
+  double scatter = 0.0;             ///< SI; standard deviation of one replicate
+  double emulated = 0.0;            ///< SI; what the emulator had promised
+  double emulated_deviation = 0.0;  ///< SI; its standard deviation
+  double z = 0.0;                   ///< (predicted - measured) / combined standard uncertainty
 };
 
 /// One evaluation in the order of work, for the convergence plot.
 struct HistoryPoint {
-  int evaluation = 0;           ///< counted from 1
-  std::string_view stage;       ///< "start", "replicate", "pair", "search", "confirm"
+  int evaluation = 0;      ///< counted from 1
+  std::string_view stage;  ///< "start", "replicate", "pair", "search", "confirm"
   engine::ParameterSet parameters;
-  std::vector<double> values;   ///< SI, one per measurement; NaN where the experiment failed
-  double misfit = 0.0;          ///< sum of squared z of this evaluation; NaN where one failed
-  double best = 0.0;            ///< smallest expected misfit so far, by the emulator
+  std::vector<double> values;  ///< SI, one per measurement; NaN where the experiment failed
+  double misfit = 0.0;         ///< sum of squared z of this evaluation; NaN where one failed
+  double best = 0.0;           ///< smallest expected misfit so far, by the emulator
 };
 
 enum class StopReason : std::uint8_t {
-  hit,            ///< fresh replicates are within one standard error of every measurement
-  no_better,      ///< nothing better is within the emulator's reach
-  implausible,    ///< no parameter set comes within three standard errors: physics is missing
-  budget,         ///< the evaluations are spent
+  hit,          ///< fresh replicates are within one standard error of every measurement
+  no_better,    ///< nothing better is within the emulator's reach
+  implausible,  ///< no parameter set comes within three standard errors: physics is missing
+  budget,       ///< the evaluations are spent
   cancelled,
-  failed,         ///< too few evaluations succeeded to learn from
+  failed,  ///< too few evaluations succeeded to learn from
 };
 
 inline constexpr std::array<std::string_view, 6> stop_reason_names{
@@ -71,7 +71,7 @@ inline constexpr std::array<std::string_view, 6> stop_reason_names{
 };
 
 struct Fit {
-  engine::ParameterSet best;  ///< complete: fixed, free and tied
+  engine::ParameterSet best;                ///< complete: fixed, free and tied
   std::vector<FittedParameter> parameters;  ///< the free ones, in the calibration's order
   std::vector<Direction> directions;        ///< best-learnt first
   std::vector<Prediction> predictions;      ///< one per measurement, in order
@@ -90,9 +90,9 @@ struct Progress {
   std::string_view stage;
   int evaluations_done = 0;
   int evaluations_planned = 0;
-  double misfit = 0.0;              ///< smallest expected misfit so far; NaN before there is one
-  std::vector<double> predicted;    ///< SI, per measurement, there
-  std::vector<double> z;            ///< per measurement, there
+  double misfit = 0.0;            ///< smallest expected misfit so far; NaN before there is one
+  std::vector<double> predicted;  ///< SI, per measurement, there
+  std::vector<double> z;          ///< per measurement, there
 };
 
 }  // namespace repose::calibrator

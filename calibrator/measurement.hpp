@@ -22,7 +22,7 @@ struct Measurement {
   double standard_error = 0.0;  ///< SI; standard uncertainty of `value`, k = 1
   double allowance = 0.0;       ///< SI; stated model discrepancy, added in quadrature
   Role role = Role::fit;
-  engine::Unit unit;            ///< as the user gave it; for printing only
+  engine::Unit unit;  ///< as the user gave it; for printing only
   std::string source;
 
   bool operator==(const Measurement&) const = default;

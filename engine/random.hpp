@@ -8,7 +8,14 @@
 namespace repose::engine {
 
 /// What a stream is for; two purposes never share numbers.
-enum class Purpose : std::uint64_t { grain_size = 1, grain_position = 2, grain_velocity = 3 };
+enum class Purpose : std::uint64_t {
+  grain_size = 1,
+  grain_position = 2,
+  grain_velocity = 3,
+  trial = 16,     ///< the seed of an evaluation
+  design = 17,    ///< space-filling points
+  proposal = 18,  ///< draws from an emulator
+};
 
 class Random {
  public:

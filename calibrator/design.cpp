@@ -1,0 +1,65 @@
+#include "calibrator/design.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "engine/random.hpp"
+
+namespace repose::calibrator {
+
+using engine::Purpose;
+using engine::Random;
+
+std::vector<UnitPoint> latin_hypercube(std::size_t count,
+                                       std::size_t dimensions,
+                                       std::uint64_t seed,
+                                       std::uint64_t index) {
+  std::vector<UnitPoint> points(count, UnitPoint(dimensions));
+  Random random(seed, Purpose::design, index);
+  std::vector<std::size_t> slices(count);
+  for (std::size_t k = 0; k < dimensions; ++k) {
+    std::iota(slices.begin(), slices.end(), std::size_t{0});
+    for (std::size_t i = count; i > 1;
+         --i) {  // Fisher-Yates: std::shuffle differs between libraries
+      const auto j = static_cast<std::size_t>(random.uniform() * static_cast<double>(i));
+      std::swap(slices[i - 1], slices[j]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      points[i][k] =
+          (static_cast<double>(slices[i]) + random.uniform()) / static_cast<double>(count);
+    }
+  }
+  return points;
+}
+
+double smallest_distance(const std::vector<UnitPoint>& points) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      smallest = std::min(smallest, distance(points[i], points[j]));
+    }
+  }
+  return smallest;
+}
+
+std::vector<UnitPoint> spread_design(std::size_t count,
+                                     std::size_t dimensions,
+                                     std::uint64_t seed,
+                                     std::uint64_t index) {
+  constexpr std::uint64_t attempts = 30;
+  std::vector<UnitPoint> best;
+  double best_distance = -1.0;
+  for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
+    auto points = latin_hypercube(count, dimensions, seed, index * attempts + attempt);
+    const double closest = smallest_distance(points);
+    if (closest > best_distance) {
+      best_distance = closest;
+      best = std::move(points);
+    }
+  }
+  return best;
+}
+
+}  // namespace repose::calibrator

@@ -1,0 +1,72 @@
+#include "calibrator/misfit.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace repose::calibrator {
+
+Suite::Suite(std::span<const Measurement> measurements) {
+  for (const Measurement& measurement : measurements) {
+    engine::Experiment experiment = measurement.experiment;
+    experiment.fidelity = {};  // decided per evaluation, so it must not tell experiments apart
+    auto found = std::ranges::find(experiments_, experiment);
+    if (found == experiments_.end()) found = experiments_.insert(found, std::move(experiment));
+    readings_.push_back(
+        {static_cast<std::size_t>(found - experiments_.begin()), measurement.observable});
+  }
+}
+
+void Suite::append_trials(const engine::ParameterSet& parameters,
+                          engine::Fidelity fidelity,
+                          std::uint64_t seed,
+                          std::vector<engine::Trial>& trials) const {
+  for (const engine::Experiment& experiment : experiments_) {
+    trials.push_back({parameters, experiment, seed});
+    trials.back().experiment.fidelity = fidelity;
+  }
+}
+
+std::vector<double> Suite::read(std::span<const engine::Evaluation> evaluations) const {
+  assert(evaluations.size() == experiments_.size());
+  std::vector<double> values;
+  values.reserve(readings_.size());
+  for (const Reading& reading : readings_) {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    const auto* observations =
+        std::get_if<std::vector<engine::Observation>>(&evaluations[reading.experiment].outcome);
+    if (observations != nullptr) {
+      const auto found =
+          std::ranges::find(*observations, reading.observable, &engine::Observation::name);
+      if (found != observations->end() && std::isfinite(found->value)) value = found->value;
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
+double standard_uncertainty(const Measurement& measurement) {
+  return std::hypot(measurement.standard_error, measurement.allowance);
+}
+
+std::vector<double> standardised_residuals(std::span<const Measurement> measurements,
+                                           std::span<const double> observed) {
+  assert(measurements.size() == observed.size());
+  std::vector<double> z(measurements.size());
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    z[j] = (observed[j] - measurements[j].value) / standard_uncertainty(measurements[j]);
+  }
+  return z;
+}
+
+double misfit(std::span<const Measurement> measurements, std::span<const double> observed) {
+  const std::vector<double> z = standardised_residuals(measurements, observed);
+  double sum = 0.0;
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    if (measurements[j].role == Role::fit) sum += z[j] * z[j];
+  }
+  return sum;
+}
+
+}  // namespace repose::calibrator

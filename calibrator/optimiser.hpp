@@ -1,0 +1,53 @@
+/// Minima of cheap functions in a box: what the emulator is searched with. Never the simulations.
+///
+/// Global: DIRECT-L (Gablonsky & Kelley 2001, J. Global Optim. 21, 27-37). Local: BOBYQA (Powell
+/// 2009, DAMTP report NA06), in one dimension subplex (Rowan 1990). Both by NLopt, which is seeded
+/// before each search on the calling thread, where its random state lives. The point returned is
+/// always in the box, and its value is the smallest seen. An exception of the function ends the
+/// search and is thrown on from here: none passes through NLopt's own frames.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace repose::calibrator {
+
+/// NaN counts as a very large value.
+using Objective = std::function<double(std::span<const double>)>;
+
+struct Box {
+  std::vector<double> lower;
+  std::vector<double> upper;
+};
+
+Box unit_box(std::size_t dimensions);
+
+struct Minimum {
+  std::vector<double> at;
+  double value = 0.0;
+};
+
+struct LocalSearch {
+  int evaluations = 80;     ///< about
+  double step = 0.1;        ///< first step, in units of the box's coordinates
+  double tolerance = 1e-4;  ///< on the coordinates, absolute
+};
+
+/// The minimum near `start`.
+Minimum minimise_locally(const Objective& objective,
+                         const Box& box,
+                         std::vector<double> start,
+                         const LocalSearch& options = {});
+
+/// A rough global minimum.
+Minimum minimise_globally(const Objective& objective, const Box& box, int evaluations);
+
+/// Global search, then local ones from what it found and from each of the starts.
+Minimum minimise(const Objective& objective,
+                 const Box& box,
+                 std::span<const std::vector<double>> starts,
+                 int global_evaluations,
+                 const LocalSearch& options = {});
+
+}  // namespace repose::calibrator
