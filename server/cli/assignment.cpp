@@ -1,0 +1,194 @@
+#include "server/cli/assignment.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "engine/catalogue.hpp"
+#include "server/report/number_text.hpp"
+
+namespace repose::server {
+
+using engine::FieldInfo;
+using engine::MaterialId;
+using engine::Result;
+using engine::Unexpected;
+using engine::Unit;
+
+namespace {
+
+std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t";
+  const std::size_t first = text.find_first_not_of(blank);
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+/// Levenshtein's distance: insertions, deletions and changes of a letter.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t corner = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t change = corner + (a[i] == b[j] ? 0 : 1);
+      corner = row[j + 1];
+      row[j + 1] = std::min({change, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string accepted_units(const engine::Dimension& dimension) {
+  std::string list;
+  for (const Unit& unit : engine::unit::all()) {
+    if (unit.dimension == dimension) list += (list.empty() ? "" : ", ") + std::string(unit.symbol);
+  }
+  return list;
+}
+
+std::string range_text(const FieldInfo& field) {
+  const auto shown = [&](double value) { return number_text(value / field.unit.factor); };
+  return shown(field.lower) + " to " + shown(field.upper) + unit_suffix(field.unit);
+}
+
+/// The number and its unit against the field's; the error starts with what was written.
+Result<double, std::string> parse_value(const FieldInfo& field, std::string_view written) {
+  const std::string_view text = trimmed(written);
+  for (std::size_t i = 0; i < field.choices.size(); ++i) {
+    if (text == field.choices[i]) return static_cast<double>(i);
+  }
+  if (!field.choices.empty()) {
+    std::string list;
+    for (const std::string_view choice : field.choices) {
+      list += (list.empty() ? "" : ", ") + std::string(choice);
+    }
+    return Unexpected{quoted(text) + " is not a choice of " + std::string(field.name) +
+                      "; write one of " + list};
+  }
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || !std::isfinite(value)) {
+    return Unexpected{quoted(text) + " is not a number; write " + std::string(field.name) +
+                      "=NUMBER" + unit_suffix(field.unit)};
+  }
+  const auto length = static_cast<std::size_t>(end - text.data());
+  const std::string_view symbol = trimmed(text.substr(length));
+  if (symbol.empty()) {
+    if (field.unit.dimension != engine::Dimension{}) {
+      return Unexpected{quoted(text) + " lacks its unit; write " + std::string(text) +
+                        std::string(field.unit.symbol) + ", or another of " +
+                        accepted_units(field.unit.dimension)};
+    }
+  } else {
+    const std::optional<Unit> unit = engine::unit::find(symbol);
+    if (!unit || unit->dimension != field.unit.dimension) {
+      return Unexpected{quoted(symbol) + " is not a unit of " + std::string(field.name) +
+                        "; accepted are " + accepted_units(field.unit.dimension)};
+    }
+    value *= unit->factor;
+  }
+  if (value < field.lower || value > field.upper) {
+    return Unexpected{quoted(text) + " is out of range; " + std::string(field.name) +
+                      " must lie in " + range_text(field)};
+  }
+  return value;
+}
+
+/// "grain-wall" -> materials; nothing where a name is none.
+std::optional<std::vector<MaterialId>> parse_between(std::string_view text) {
+  std::vector<MaterialId> between;
+  while (!text.empty()) {
+    const std::size_t dash = text.find('-');
+    const auto& names = engine::material_names;
+    const auto found = std::ranges::find(names, text.substr(0, dash));
+    if (found == names.end()) return std::nullopt;
+    between.push_back(static_cast<MaterialId>(found - names.begin()));
+    text = dash == text.npos ? std::string_view{} : text.substr(dash + 1);
+  }
+  return between;
+}
+
+std::string wanted_key(std::string_view field, engine::Scope scope) {
+  const std::string name(field);
+  switch (scope) {
+    case engine::Scope::global:
+      return name;
+    case engine::Scope::material:
+      return name + ":grain or " + name + ":wall";
+    case engine::Scope::pair:
+      return name + ":grain-grain or " + name + ":grain-wall";
+  }
+  return name;
+}
+
+}  // namespace
+
+std::string nearest(std::string_view written, const std::vector<std::string_view>& names) {
+  const auto by_distance = [&](std::string_view a, std::string_view b) {
+    return distance(written, a) < distance(written, b);
+  };
+  const auto best = std::ranges::min_element(names, by_distance);
+  if (best == names.end() ||
+      distance(written, *best) > std::max<std::size_t>(2, written.size() / 3)) {
+    return {};
+  }
+  return "; did you mean " + quoted(*best) + "?";
+}
+
+Result<ParameterAssignment, std::string> parse_parameter(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  if (equals == text.npos) {
+    return Unexpected{quoted(text) +
+                      " assigns nothing; write FIELD:grain-grain=VALUE, for instance "
+                      "sliding_friction.coefficient:grain-wall=0.3"};
+  }
+  const std::string_view left = trimmed(text.substr(0, equals));
+  const std::size_t colon = left.find(':');
+  const std::string_view field = left.substr(0, colon);
+  const engine::ParameterInfo* info = engine::find_parameter(field);
+  if (info == nullptr) {
+    const auto names = engine::parameter_names();
+    return Unexpected{"there is no parameter " + quoted(field) +
+                      nearest(field, {names.begin(), names.end()}) +
+                      " `repose catalogue` lists them all"};
+  }
+  const auto between = parse_between(colon == left.npos ? "" : left.substr(colon + 1));
+  if (!between || between->size() != engine::materials_of(info->scope)) {
+    return Unexpected{quoted(left) + " does not name what it is between; write " +
+                      wanted_key(field, info->scope)};
+  }
+  const auto value = parse_value(*info->field, text.substr(equals + 1));
+  if (!value) return Unexpected{std::string(left) + ": " + value.error()};
+  return ParameterAssignment{engine::make_key(field, *between), *value};
+}
+
+Result<SettingAssignment, std::string> parse_setting(const engine::ExperimentInfo& info,
+                                                     std::string_view text) {
+  std::vector<std::string_view> names;
+  for (const FieldInfo& field : info.settings) names.push_back(field.name);
+  const std::size_t equals = text.find('=');
+  if (equals == text.npos) {
+    return Unexpected{quoted(text) + " assigns nothing; write NAME=VALUE"};
+  }
+  const std::string_view name = trimmed(text.substr(0, equals));
+  const auto field = std::ranges::find(info.settings, name, &FieldInfo::name);
+  if (field == info.settings.end()) {
+    std::string list;
+    for (const std::string_view known : names)
+      list += (list.empty() ? "" : ", ") + std::string(known);
+    return Unexpected{std::string(info.name) + " has no setting " + quoted(name) +
+                      nearest(name, names) + " It has " + list};
+  }
+  const auto value = parse_value(*field, text.substr(equals + 1));
+  if (!value) return Unexpected{std::string(name) + ": " + value.error()};
+  return SettingAssignment{std::string(name), *value};
+}
+
+}  // namespace repose::server

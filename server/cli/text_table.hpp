@@ -1,0 +1,26 @@
+/// TextTable: columns that line up on a terminal.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace repose::server {
+
+class TextTable {
+ public:
+  /// The first column is set to the left, the others to the right.
+  explicit TextTable(std::vector<std::string> head) : rows_{std::move(head)} {}
+
+  void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  /// Lines end with a newline; the first holds the heads.
+  [[nodiscard]] std::string str() const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// Letters that a UTF-8 text takes on a terminal.
+std::size_t letters(std::string_view text);
+
+}  // namespace repose::server
