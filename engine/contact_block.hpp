@@ -13,6 +13,7 @@
 ///                 shear_damping
 ///   rolling       roll, spins, elastic_force,        couple_x..z
 ///                 grip_force
+///   loads         all forces                         force_x..z, torque_i_x..z, torque_j_x..z
 ///
 /// Lanes past the last contact hold two spheres that just touch, at rest: loops always run to
 /// `width`.
@@ -54,6 +55,11 @@ struct ContactBlock {
   alignas(64) Column shear_damping;  ///< tangential dashpot, N s/m
   alignas(64) Column tangent_x, tangent_y, tangent_z;  ///< friction force on i, N
   alignas(64) Column couple_x, couple_y, couple_z;     ///< rolling couple on i (opposite on j), N m
+
+  // Loads, to be added to the grains.
+  alignas(64) Column force_x, force_y, force_z;           ///< on i, N; j takes the opposite
+  alignas(64) Column torque_i_x, torque_i_y, torque_i_z;  ///< on i about its centre, N m
+  alignas(64) Column torque_j_x, torque_j_y, torque_j_z;  ///< on j about its centre, N m
 
   int count = 0;               ///< contacts in the block
   double modulus = 0.0;        ///< E* of the pair, Pa

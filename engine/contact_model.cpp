@@ -80,6 +80,27 @@ template <Partner partner>
   }
 }
 
+/// What the grains receive. The tangential force acts at the contact point: -arm_i n from centre i,
+/// arm_j n from centre j.
+[[gnu::always_inline]] inline void sum_loads(ContactBlock& c) {
+  for (int i = 0; i < width; ++i) {
+    const double nx = c.normal_x[i], ny = c.normal_y[i], nz = c.normal_z[i];
+    const double tx = c.tangent_x[i], ty = c.tangent_y[i], tz = c.tangent_z[i];
+    const double f = c.normal_force[i], arm_i = c.arm_i[i], arm_j = c.arm_j[i];
+    const double mx = ny * tz - nz * ty, my = nz * tx - nx * tz, mz = nx * ty - ny * tx;
+    const double cx = c.couple_x[i], cy = c.couple_y[i], cz = c.couple_z[i];
+    c.force_x[i] = f * nx + tx;
+    c.force_y[i] = f * ny + ty;
+    c.force_z[i] = f * nz + tz;
+    c.torque_i_x[i] = cx - arm_i * mx;
+    c.torque_i_y[i] = cy - arm_i * my;
+    c.torque_i_z[i] = cz - arm_i * mz;
+    c.torque_j_x[i] = -cx - arm_j * mx;
+    c.torque_j_y[i] = -cy - arm_j * my;
+    c.torque_j_z[i] = -cz - arm_j * mz;
+  }
+}
+
 template <std::size_t I>
 [[gnu::always_inline]] inline void apply_one(const PairLaw& law,
                                              ContactBlock& block,
@@ -115,8 +136,11 @@ void apply(
                        &block.couple_z}) {
     column->fill(0.0);
   }
-  [&]<std::size_t... I>(std::index_sequence<I...>) { (apply_one<I>(law, block, history, dt), ...); }
-  (std::make_index_sequence<effect_count>{});
+  const auto fold = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (apply_one<I>(law, block, history, dt), ...);
+  };
+  fold(std::make_index_sequence<effect_count>{});
+  sum_loads(block);
 }
 
 namespace {
@@ -158,10 +182,10 @@ ContactModel::ContactModel(const ParameterSet& parameters) {
     const auto id = static_cast<MaterialId>(i);
     materials_[i] = material_of(parameters, id);
     laws_[i].elastic = pair_elastic(materials_[0], materials_[i]);
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
+    const auto fold = [&]<std::size_t... I>(std::index_sequence<I...>) {
       (bind_one<I>(parameters, id, laws_[i]), ...);
-    }
-    (std::make_index_sequence<effect_count>{});
+    };
+    fold(std::make_index_sequence<effect_count>{});
     history_columns_ = std::max(history_columns_, laws_[i].history_columns);
   }
 }

@@ -12,7 +12,7 @@ constexpr int width = ContactBlock::width;
 
 /// Steps a grain may fly before its skin is used up: long enough to spread the cost of a search,
 /// short enough to keep the list of a falling stream small.
-constexpr double horizon_steps = 24.0;
+constexpr double horizon_steps = 40.0;
 
 /// Half a period, or more than any distance where there is none.
 double half(double period) {
@@ -26,16 +26,28 @@ double image(double d, double period, double half_period) {
   return d;
 }
 
-void gather_history(
-    const Candidates& candidates, int columns, std::uint32_t k, int lane, double* to) {
-  const double* from = candidates.history.data() + static_cast<std::size_t>(k) * columns;
+/// A candidate's history to its lane of a block, and back. Most laws carry three columns or six.
+template <int columns>
+void gather_columns(const double* from, int lane, double* to) {
   for (int q = 0; q < columns; ++q) to[q * width + lane] = from[q];
 }
-
-void scatter_history(
-    Candidates& candidates, int columns, std::uint32_t k, int lane, const double* from) {
-  double* to = candidates.history.data() + static_cast<std::size_t>(k) * columns;
+template <int columns>
+void scatter_columns(double* to, int lane, const double* from) {
   for (int q = 0; q < columns; ++q) to[q] = from[q * width + lane];
+}
+
+void gather_history(const Candidates& c, int columns, std::uint32_t k, int lane, double* to) {
+  const double* from = c.history.data() + static_cast<std::size_t>(k) * columns;
+  int q = 0;
+  for (; q + 3 <= columns; q += 3) gather_columns<3>(from + q, lane, to + q * width);
+  for (; q < columns; ++q) gather_columns<1>(from + q, lane, to + q * width);
+}
+
+void scatter_history(Candidates& c, int columns, std::uint32_t k, int lane, const double* from) {
+  double* to = c.history.data() + static_cast<std::size_t>(k) * columns;
+  int q = 0;
+  for (; q + 3 <= columns; q += 3) scatter_columns<3>(to + q, lane, from + q * width);
+  for (; q < columns; ++q) scatter_columns<1>(to + q, lane, from + q * width);
 }
 
 /// Lanes past the last contact: two equal spheres that just touch, at rest.
@@ -60,38 +72,23 @@ void gather_end_i(ContactBlock& c, int lane, const GrainRow& a) {
   c.spin_i_z[lane] = a.wz;
 }
 
-/// Force on end i of a lane, and the torque that force and couple make about its centre.
-GrainLoad load_on_i(const ContactBlock& c, int lane) {
-  const double nx = c.normal_x[lane], ny = c.normal_y[lane], nz = c.normal_z[lane];
-  const double tx = c.tangent_x[lane], ty = c.tangent_y[lane], tz = c.tangent_z[lane];
-  const double f = c.normal_force[lane], arm = c.arm_i[lane];
-  return {f * nx + tx,
-          f * ny + ty,
-          f * nz + tz,
-          -arm * (ny * tz - nz * ty) + c.couple_x[lane],
-          -arm * (nz * tx - nx * tz) + c.couple_y[lane],
-          -arm * (nx * ty - ny * tx) + c.couple_z[lane]};
+/// Adds a lane's force and torque to the grain at end i.
+void load_end_i(const ContactBlock& c, int lane, GrainLoad& load) {
+  load.fx += c.force_x[lane];
+  load.fy += c.force_y[lane];
+  load.fz += c.force_z[lane];
+  load.tx += c.torque_i_x[lane];
+  load.ty += c.torque_i_y[lane];
+  load.tz += c.torque_i_z[lane];
 }
 
-void operator+=(GrainLoad& to, const GrainLoad& load) {
-  to.fx += load.fx;
-  to.fy += load.fy;
-  to.fz += load.fz;
-  to.tx += load.tx;
-  to.ty += load.ty;
-  to.tz += load.tz;
-}
-
-/// The same contact seen from end j: opposite force; its torque has end j's arm and the opposite
-/// couple.
-GrainLoad load_on_j(const ContactBlock& c, int lane, const GrainLoad& i) {
-  const double share = c.arm_j[lane] / c.arm_i[lane];
-  return {-i.fx,
-          -i.fy,
-          -i.fz,
-          share * (i.tx - c.couple_x[lane]) - c.couple_x[lane],
-          share * (i.ty - c.couple_y[lane]) - c.couple_y[lane],
-          share * (i.tz - c.couple_z[lane]) - c.couple_z[lane]};
+void load_end_j(const ContactBlock& c, int lane, GrainLoad& load) {
+  load.fx -= c.force_x[lane];
+  load.fy -= c.force_y[lane];
+  load.fz -= c.force_z[lane];
+  load.tx += c.torque_j_x[lane];
+  load.ty += c.torque_j_y[lane];
+  load.tz += c.torque_j_z[lane];
 }
 
 /// Forgets the contact of a candidate that has opened.
@@ -218,6 +215,7 @@ void World::push_pairs() {
   alignas(64) ContactBlock c;
   alignas(64) std::array<double, width * most_history_columns> history;
   const GrainRow* const rows = grains_.rows.data();
+  GrainLoad* const loads = grains_.loads.data();
   for (std::size_t first = 0; first < closed_pairs_.size(); first += width) {
     c.count = static_cast<int>(std::min<std::size_t>(width, closed_pairs_.size() - first));
     const std::uint32_t* const block = closed_pairs_.data() + first;
@@ -243,9 +241,8 @@ void World::push_pairs() {
     apply(law, Partner::grain, c, HistoryBlock(history.data()), options_.time_step);
     for (int lane = 0; lane < c.count; ++lane) {
       const std::uint32_t k = block[lane];
-      const GrainLoad load = load_on_i(c, lane);
-      grains_.loads[p.i[k]] += load;
-      grains_.loads[p.j[k]] += load_on_j(c, lane, load);
+      load_end_i(c, lane, loads[p.i[k]]);
+      load_end_j(c, lane, loads[p.j[k]]);
       p.closed[k] = 1;
       scatter_history(p, columns, k, lane, history.data());
     }
@@ -282,7 +279,7 @@ void World::push_walls() {
       apply(law, Partner::wall, c, HistoryBlock(history.data()), options_.time_step);
       for (int lane = 0; lane < c.count; ++lane) {
         const std::uint32_t k = closed[first + static_cast<std::size_t>(lane)];
-        grains_.loads[w.i[k]] += load_on_i(c, lane);
+        load_end_i(c, lane, grains_.loads[w.i[k]]);
         w.closed[k] = 1;
         scatter_history(w, columns, k, lane, history.data());
       }
