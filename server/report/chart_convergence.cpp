@@ -104,13 +104,14 @@ void draw_legend(Svg& svg, const Fit& fit) {
     svg.text(x + 12.0, y, stage, "start", "tick left");
     x += 26.0 + 6.4 * static_cast<double>(stage.size());
   }
-  svg.line(x, y - 4.0, x + 18.0, y - 4.0, "expectation");
-  svg.text(x + 23.0, y, "best expected", "start", "tick left");
-  x += 112.0;
+  x = fit.failed > 0 ? right - 180.0 : right - 112.0;
+  svg.line(x, 6.0, x + 18.0, 6.0, "expectation");
+  svg.text(x + 23.0, 10.0, "best expected", "start", "tick left");
   if (fit.failed == 0) return;
-  svg.line(x, y - 7.5, x + 7.0, y - 0.5, "failed");
-  svg.line(x, y - 0.5, x + 7.0, y - 7.5, "failed");
-  svg.text(x + 12.0, y, "failed", "start", "tick left");
+  x += 124.0;
+  svg.line(x, 2.5, x + 7.0, 9.5, "failed");
+  svg.line(x, 9.5, x + 7.0, 2.5, "failed");
+  svg.text(x + 12.0, 10.0, "failed", "start", "tick left");
 }
 
 }  // namespace

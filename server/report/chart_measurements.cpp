@@ -109,7 +109,7 @@ std::string parity_chart(const Calibration& calibration, const Fit& fit) {
 }
 
 std::string residual_chart(const Calibration& calibration, const Fit& fit) {
-  constexpr double row = 42.0, foot = 40.0, left = 186.0;
+  constexpr double row = 42.0, foot = 40.0, left = 212.0;
   constexpr double most = 8.0;  // standard errors drawn to scale; beyond, the bar is cut
   double reach = 3.0;
   for (const Prediction& prediction : fit.predictions) {

@@ -76,7 +76,7 @@ std::string interval_chart(const Calibration& calibration, const Fit& fit) {
 }
 
 std::string direction_chart(const Calibration& calibration, const Fit& fit) {
-  constexpr double left = 200.0, head = 62.0, row = 34.0, widest = 62.0;
+  constexpr double left = 216.0, head = 62.0, row = 34.0, widest = 62.0;
   const double count = static_cast<double>(std::max<std::size_t>(1, fit.directions.size()));
   const double column = std::min(widest, (width - left) / count);
   const double bottom = head + row * static_cast<double>(calibration.free.size());

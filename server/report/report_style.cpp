@@ -71,7 +71,7 @@ figcaption b { color: var(--ink); }
   font-family: inherit; }
 .chart text { font-size: 13px; }
 .chart .label { font-weight: 600; }
-.chart .small { font-size: 12.5px; }
+.chart .small { font-size: 12px; }
 .chart .quiet { fill: var(--quiet); font-size: 12.5px; }
 .chart .tick { fill: var(--quiet); font-size: 11.5px; }
 .chart .inside { fill: #fff; font-weight: 600; }

@@ -1,0 +1,129 @@
+#include "server/json/replicates_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include <nlohmann/json.hpp>
+
+namespace repose::server {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// JSON has no NaN.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json failure_json(const engine::Failure& failure) {
+  return {{"kind", engine::failure_kind_names.at(static_cast<std::size_t>(failure.kind))},
+          {"message", failure.message},
+          {"simulated_seconds", failure.simulated_seconds}};
+}
+
+Json effort_json(const engine::Effort& effort) {
+  return {{"grains", effort.grains},
+          {"inserted", effort.inserted},
+          {"requested", effort.requested},
+          {"steps", effort.steps},
+          {"grain_steps", effort.grain_steps},
+          {"time_step", effort.time_step},
+          {"simulated_seconds", effort.simulated_seconds},
+          {"largest_overlap", effort.largest_overlap}};
+}
+
+Json run_json(const engine::Evaluation& evaluation, double wall_seconds) {
+  Json run{{"seed", evaluation.trial.seed}};
+  if (const auto* failure = std::get_if<engine::Failure>(&evaluation.outcome)) {
+    run["failure"] = failure_json(*failure);
+  } else {
+    Json values = Json::object();
+    for (const auto& seen : std::get<std::vector<engine::Observation>>(evaluation.outcome)) {
+      values[seen.name] = number(seen.value);
+    }
+    run["observations_si"] = std::move(values);
+  }
+  run.update(effort_json(evaluation.effort));
+  run["wall_seconds"] = wall_seconds;
+  return run;
+}
+
+}  // namespace
+
+const engine::Evaluation* Replicates::failed() const {
+  const auto is_failure = [](const engine::Evaluation& evaluation) {
+    return std::holds_alternative<engine::Failure>(evaluation.outcome);
+  };
+  const auto found = std::ranges::find_if(evaluations, is_failure);
+  return found == evaluations.end() ? nullptr : &*found;
+}
+
+engine::Effort Replicates::effort() const {
+  engine::Effort sum;
+  if (evaluations.empty()) return sum;
+  sum = evaluations.front().effort;
+  for (std::size_t i = 1; i < evaluations.size(); ++i) {
+    const engine::Effort& effort = evaluations[i].effort;
+    sum.inserted += effort.inserted;
+    sum.requested += effort.requested;
+    sum.steps += effort.steps;
+    sum.grain_steps += effort.grain_steps;
+    sum.rebuilds += effort.rebuilds;
+    sum.simulated_seconds += effort.simulated_seconds;
+    sum.largest_overlap = std::max(sum.largest_overlap, effort.largest_overlap);
+  }
+  return sum;
+}
+
+double Replicates::particle_steps_per_second() const {
+  return elapsed > 0.0 ? static_cast<double>(effort().grain_steps) / elapsed : 0.0;
+}
+
+std::string print_replicates(const Replicates& replicates, std::string_view engine_version) {
+  const engine::Experiment& experiment = replicates.trial.experiment;
+  Json document{
+      {"experiment", experiment.name},
+      {"fidelity", engine::fidelity_names.at(static_cast<std::size_t>(experiment.fidelity))}};
+  if (const engine::Evaluation* failed = replicates.failed()) {
+    document["failure"] = failure_json(std::get<engine::Failure>(failed->outcome));
+    document["failure"]["seed"] = failed->trial.seed;
+  } else {
+    document["observations"] = Json::array();
+    for (const MeanObservation& seen : replicates.observations) {
+      document["observations"].push_back(
+          {{"name", seen.name},
+           {"value", number(seen.value / seen.unit.factor)},
+           {"standard_error", number(seen.standard_error / seen.unit.factor)},
+           {"unit", seen.unit.symbol}});
+    }
+  }
+  document.update(effort_json(replicates.effort()));
+  document["wall_seconds"] = replicates.elapsed;
+  document["particle_steps_per_second"] = number(replicates.particle_steps_per_second());
+  document["seed"] = replicates.trial.seed;
+  document["replicates"] = replicates.evaluations.size();
+  document["parameters"] = Json::object();
+  for (const auto& [key, value] : replicates.trial.parameters) {
+    document["parameters"][engine::to_string(key)] = value;
+  }
+  document["settings"] = experiment.settings;
+  document["engine_version"] = engine_version;
+  document["runs"] = Json::array();
+  for (std::size_t i = 0; i < replicates.evaluations.size(); ++i) {
+    document["runs"].push_back(run_json(replicates.evaluations[i], replicates.wall_seconds.at(i)));
+  }
+  return document.dump(2);
+}
+
+std::string print_error(const std::string& message, const Problems& problems) {
+  Json list = Json::array();
+  for (const Problem& problem : problems) {
+    list.push_back({{"pointer", problem.pointer},
+                    {"message", problem.message},
+                    {"found", problem.found},
+                    {"allowed", problem.allowed}});
+  }
+  return Json{{"error", {{"message", message}, {"problems", std::move(list)}}}}.dump(2);
+}
+
+}  // namespace repose::server
