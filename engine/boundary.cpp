@@ -1,13 +1,12 @@
 #include "engine/boundary.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace repose::engine {
 
 namespace {
 
-constexpr double endless = 1e3;  // m; far beyond any apparatus
+constexpr double endless = 64.0;  // m; beyond any apparatus, and near enough to keep its digits
 
 }  // namespace
 
@@ -33,20 +32,33 @@ Surface disc(double radius, double z, MaterialId material, double inner) {
   return {Surface::Sweep::revolved, inner, z, radius, z, material, {}};
 }
 
-Vec3 nearest_point(const Surface& surface, const Vec3& centre) {
+Vec3 offset_from(const Surface& surface, const Vec3& centre) {
   const bool revolved = surface.sweep == Surface::Sweep::revolved;
   const double s = revolved ? std::sqrt(centre.x * centre.x + centre.y * centre.y) : centre.x;
   const double run_s = surface.to_s - surface.from_s;
   const double run_z = surface.to_z - surface.from_z;
-  const double along = (s - surface.from_s) * run_s + (centre.z - surface.from_z) * run_z;
-  const double t = std::clamp(along / (run_s * run_s + run_z * run_z), 0.0, 1.0);
-  const double near_s = surface.from_s + t * run_s;
-  const double near_z = surface.from_z + t * run_z;
-  if (!revolved) return {near_s, centre.y, near_z};
+  const double squared = run_s * run_s + run_z * run_z;
+  const double rel_s = s - surface.from_s;
+  const double rel_z = centre.z - surface.from_z;
+  const double along = rel_s * run_s + rel_z * run_z;
+  double off_s = 0.0, off_z = 0.0;
+  if (along <= 0.0) {
+    off_s = rel_s;
+    off_z = rel_z;
+  } else if (along >= squared) {
+    off_s = s - surface.to_s;
+    off_z = centre.z - surface.to_z;
+  } else {
+    // Along the profile's normal, so that the digits of a long wall are not lost.
+    const double across = (rel_z * run_s - rel_s * run_z) / squared;
+    off_s = -across * run_z;
+    off_z = across * run_s;
+  }
+  if (!revolved) return {off_s, 0.0, off_z};
   // On the axis every direction is as near: the x axis stands for them.
   const double x = s > 0.0 ? centre.x / s : 1.0;
   const double y = s > 0.0 ? centre.y / s : 0.0;
-  return {near_s * x, near_s * y, near_z};
+  return {off_s * x, off_s * y, off_z};
 }
 
 std::vector<FrameWall> outline(const std::vector<Surface>& surfaces) {

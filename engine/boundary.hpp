@@ -38,8 +38,8 @@ Surface cone(double low_radius,
 /// A flat disc, with a hole where inner > 0.
 Surface disc(double radius, double z, MaterialId material = MaterialId::wall, double inner = 0.0);
 
-/// The point of a surface that is nearest to a centre.
-Vec3 nearest_point(const Surface& surface, const Vec3& centre);
+/// From the nearest point of a surface to a centre.
+Vec3 offset_from(const Surface& surface, const Vec3& centre);
 
 /// The surfaces as a picture needs them.
 std::vector<FrameWall> outline(const std::vector<Surface>& surfaces);

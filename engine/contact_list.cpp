@@ -201,7 +201,7 @@ void ContactList::find_walls(const Grains& grains, std::span<const Surface> surf
   for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
     for (std::uint32_t k = 0; k < grains.size(); ++k) {
       const Vec3 centre = grains.rows[k].centre();
-      const Vec3 d = centre - nearest_point(surfaces[s], centre);
+      const Vec3 d = offset_from(surfaces[s], centre);
       const double near = grains.rows[k].radius + skins_[k];
       if (dot(d, d) >= near * near) continue;
       walls.i.push_back(k);

@@ -195,7 +195,7 @@ void World::find_closed_walls() {
   for (std::uint32_t k = 0; k < w.size(); ++k) {
     const GrainRow& a = grains_.rows[w.i[k]];
     const Surface& surface = surfaces_[w.j[k]];
-    const Vec3 d = a.centre() - nearest_point(surface, a.centre());
+    const Vec3 d = offset_from(surface, a.centre());
     const double squared = dot(d, d);
     if (squared < a.radius * a.radius && squared > 0.0) {
       closed_walls_[static_cast<std::size_t>(surface.material)].push_back(k);
@@ -263,7 +263,7 @@ void World::push_walls() {
         const std::uint32_t k = closed[first + static_cast<std::size_t>(lane)];
         const GrainRow& a = grains_.rows[w.i[k]];
         const Surface& surface = surfaces_[w.j[k]];
-        const Vec3 d = a.centre() - nearest_point(surface, a.centre());
+        const Vec3 d = offset_from(surface, a.centre());
         c.normal_x[lane] = d.x;
         c.normal_y[lane] = d.y;
         c.normal_z[lane] = d.z;
@@ -350,7 +350,7 @@ double World::largest_overlap() const {
   for (std::size_t k = 0; k < list_.walls.size(); ++k) {
     if (list_.walls.closed[k] == 0) continue;
     const GrainRow& a = grains_.rows[list_.walls.i[k]];
-    const Vec3 d = a.centre() - nearest_point(surfaces_[list_.walls.j[k]], a.centre());
+    const Vec3 d = offset_from(surfaces_[list_.walls.j[k]], a.centre());
     largest = std::max(largest, 1.0 - norm(d) / a.radius);
   }
   return largest;

@@ -67,18 +67,21 @@ struct SlidingFriction {
       y = y * stretch + uy * dt;
       z = z * stretch + uz * dt;
       const double k = shear * c.patch_radius[i], g = c.shear_damping[i];
+      const double limit = mu * c.grip_force[i];
+      const double spring = k * std::sqrt(x * x + y * y + z * z);
+      const double held = spring > limit ? limit / spring : 1.0;
+      x *= held;
+      y *= held;
+      z *= held;
       const double tx = -k * x - g * ux, ty = -k * y - g * uy, tz = -k * z - g * uz;
       const double trial = std::sqrt(tx * tx + ty * ty + tz * tz);
-      const double limit = mu * c.grip_force[i];
-      const bool slides = trial > limit;
-      const double keep = slides ? limit / trial : 1.0;
-      const double back = slides && k > 0.0 ? 1.0 / k : 0.0;
+      const double keep = trial > limit ? limit / trial : 1.0;
       c.tangent_x[i] = keep * tx;
       c.tangent_y[i] = keep * ty;
       c.tangent_z[i] = keep * tz;
-      sx[i] = slides ? -back * (keep * tx + g * ux) : x;
-      sy[i] = slides ? -back * (keep * ty + g * uy) : y;
-      sz[i] = slides ? -back * (keep * tz + g * uz) : z;
+      sx[i] = x;
+      sy[i] = y;
+      sz[i] = z;
     }
   }
 };

@@ -1,0 +1,128 @@
+#include "engine/contact_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <catch2/catch.hpp>
+
+#include "engine/random.hpp"
+
+using namespace repose::engine;
+
+namespace {
+
+Grains scattered(int count, double box, double smallest, std::uint64_t seed) {
+  Grains grains;
+  Random random(seed, Purpose::grain_position);
+  for (int k = 0; k < count; ++k) {
+    GrainRow row = sphere(3e-3 * random.uniform(smallest, 1.0), 1000);
+    row.x = random.uniform(0.0, box);
+    row.y = random.uniform(0.0, box);
+    row.z = random.uniform(0.0, box);
+    row.vx = random.uniform() < 0.1 ? random.uniform(-2.0, 2.0) : 0.0;
+    grains.rows.push_back(row);
+    grains.ids.push_back(static_cast<std::uint32_t>(k));
+    grains.loads.push_back({});
+  }
+  return grains;
+}
+
+using Names = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// Every pair that overlaps, by looking at all of them.
+Names overlapping(const Grains& grains, const Vec3& period) {
+  Names names;
+  const auto near = [](double d, double p) { return p > 0.0 ? std::remainder(d, p) : d; };
+  for (std::size_t a = 0; a < grains.size(); ++a) {
+    for (std::size_t b = a + 1; b < grains.size(); ++b) {
+      Vec3 d = grains.rows[a].centre() - grains.rows[b].centre();
+      d.x = near(d.x, period.x);
+      d.y = near(d.y, period.y);
+      if (norm(d) < grains.rows[a].radius + grains.rows[b].radius) {
+        names.insert(std::minmax(grains.ids[a], grains.ids[b]));
+      }
+    }
+  }
+  return names;
+}
+
+Names listed(const ContactList& list, const Grains& grains) {
+  Names names;
+  for (std::size_t k = 0; k < list.pairs.size(); ++k) {
+    const std::uint32_t i = grains.ids[list.pairs.i[k]];
+    const std::uint32_t j = grains.ids[list.pairs.j[k]];
+    CHECK(i < j);
+    CHECK(names.insert({i, j}).second);  // no pair twice
+  }
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("no touching pair is missing from the list, nor listed twice", "[engine]") {
+  for (const double smallest : {1.0, 0.3}) {
+    for (const Vec3 period : {Vec3{}, Vec3{0.05, 0.05, 0.0}, Vec3{0.0, 0.05, 0.0}}) {
+      CAPTURE(smallest, period.x, period.y);
+      Grains grains = scattered(600, 0.05, smallest, 5);
+      ContactList list(0);
+      list.rebuild(grains, {}, period, 1e-3);
+      const Names names = listed(list, grains);
+      for (const auto& name : overlapping(grains, period)) CHECK(names.count(name) == 1);
+    }
+  }
+}
+
+TEST_CASE("the list stays complete until a grain has moved by its skin", "[engine]") {
+  Grains grains = scattered(400, 0.04, 0.6, 9);
+  ContactList list(0);
+  const double dt = 1e-4;
+  list.rebuild(grains, {}, {}, 10 * dt);
+  Random random(1, Purpose::grain_velocity);
+  for (GrainRow& row : grains.rows) {
+    row.vy = random.uniform(-0.3, 0.3);
+  }
+  int valid = 0;
+  while (!list.outlived(grains)) {
+    const Names names = listed(list, grains);
+    for (const auto& name : overlapping(grains, {})) REQUIRE(names.count(name) == 1);
+    for (GrainRow& row : grains.rows) {
+      row.x += row.vx * dt;
+      row.y += row.vy * dt;
+    }
+    ++valid;
+  }
+  CHECK(valid > 1);
+}
+
+TEST_CASE("history follows a contact through a rebuild that re-orders the rows", "[engine]") {
+  Grains grains = scattered(500, 0.04, 0.8, 3);
+  ContactList list(3);
+  const std::vector<Surface> walls{plane(0.0)};
+  list.rebuild(grains, walls, {}, 1e-3);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> marked;
+  for (std::size_t k = 0; k < list.pairs.size(); ++k) {
+    list.pairs.closed[k] = 1;
+    const auto name = std::pair{grains.ids[list.pairs.i[k]], grains.ids[list.pairs.j[k]]};
+    list.pairs.history[3 * k + 1] = marked[name] = 1.0 + static_cast<double>(k);
+  }
+  REQUIRE(list.walls.size() > 0);
+  for (std::size_t k = 0; k < list.walls.size(); ++k) {
+    list.walls.closed[k] = 1;
+    list.walls.history[3 * k] = 1000.0 + grains.ids[list.walls.i[k]];
+  }
+  const std::vector<std::uint32_t> before = grains.ids;
+  for (GrainRow& row : grains.rows) row.x = 0.04 - row.x;  // mirrored: same neighbours, other cells
+  list.rebuild(grains, walls, {}, 1e-3);
+  CHECK(grains.ids != before);
+  for (std::size_t k = 0; k < list.pairs.size(); ++k) {
+    const auto name = std::pair{grains.ids[list.pairs.i[k]], grains.ids[list.pairs.j[k]]};
+    REQUIRE(marked.count(name) == 1);
+    CHECK(list.pairs.history[3 * k + 1] == marked[name]);
+  }
+  for (std::size_t k = 0; k < list.walls.size(); ++k) {
+    CHECK(list.walls.history[3 * k] == 1000.0 + grains.ids[list.walls.i[k]]);
+  }
+}
