@@ -135,10 +135,8 @@ std::string nearest(std::string_view written, const std::vector<std::string_view
     return distance(written, a) < distance(written, b);
   };
   const auto best = std::ranges::min_element(names, by_distance);
-  if (best == names.end() ||
-      distance(written, *best) > std::max<std::size_t>(2, written.size() / 3)) {
-    return {};
-  }
+  const std::size_t close = std::max<std::size_t>(2, written.size() / 3);
+  if (best == names.end() || distance(written, *best) > close) return ".";
   return "; did you mean " + quoted(*best) + "?";
 }
 

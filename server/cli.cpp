@@ -1,0 +1,260 @@
+#include "server/cli.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/catalogue.hpp"
+#include "engine/evaluate.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/exit_code.hpp"
+#include "server/cli/input.hpp"
+
+namespace repose::server {
+
+namespace {
+
+/// What the command line asked for; empty until a command is read.
+using Work = std::function<int()>;
+
+constexpr const char* main_footer =
+    "A five-minute start:\n"
+    "  repose evaluate kettle --fidelity draft      one virtual experiment with a reference grain\n"
+    "  repose calibrate study.json                  calibrate, print the answer, write a report\n"
+    "  repose serve                                 the same as a service with a web page\n\n"
+    "Exit code: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.";
+
+constexpr const char* evaluate_footer =
+    "Examples:\n"
+    "  repose evaluate kettle --replicates 3\n"
+    "  repose evaluate tilting_box --set sliding_friction.coefficient:grain-grain=0.6 --json\n"
+    "  repose evaluate drop --set material.shear_modulus:grain=41.7MPa --setting height=300mm\n"
+    "  repose evaluate kettle --study study.json --frames frames/\n\n"
+    "A value carries its unit unless it is a plain number: 41.7MPa, '15 rpm', 0.3.\n"
+    "Without a study the grain is soybean: 6.496 mm, 1228 kg/m3, G 1.04 MPa, restitution 0.6,\n"
+    "sliding friction 0.45 (grain-wall 0.30), rolling resistance 0.05.";
+
+constexpr const char* calibrate_footer =
+    "Ctrl-C stops; the same command takes the calibration up where it was. Progress goes to\n"
+    "standard error: a display that renews itself on a terminal, a line a batch elsewhere.";
+
+CLI::Option* add_database(CLI::App& command, std::filesystem::path& database) {
+  return command
+      .add_option("--db",
+                  database,
+                  "Database file (default: $REPOSE_DB, else repose/repose.db in "
+                  "$XDG_DATA_HOME or ~/.local/share)")
+      ->type_name("FILE");
+}
+
+void add_json(CLI::App& command, Form& form, const char* what) {
+  command.add_flag_callback(
+      "--json", [&form] { form = Form::json; }, what);
+}
+
+void add_evaluate(CLI::App& app, EvaluateCommand& options, Work& work) {
+  CLI::App& command = *app.add_subcommand("evaluate", "Run one virtual experiment");
+  std::string names;
+  for (const auto& info : engine::experiment_catalogue()) {
+    names += (names.empty() ? "" : ", ") + std::string(info.name);
+  }
+  command.add_option("experiment", options.experiment, "Which: " + names)->required();
+  command.add_option("--study", options.study, "Take parameters and settings from a study")
+      ->type_name("FILE");
+  command
+      .add_option("--set",
+                  options.parameters,
+                  "Set a parameter, for instance sliding_friction.coefficient:grain-wall=0.3")
+      ->type_name("FIELD:BETWEEN=VALUE")
+      ->expected(1)
+      ->take_all();
+  command.add_option("--setting", options.settings, "Set the apparatus or the conditions")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->take_all();
+  command.add_option("--seed", options.seed, "Seed of the first replicate")->capture_default_str();
+  command.add_option("--replicates", options.replicates, "Runs that differ in seed only")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10000));
+  command
+      .add_option_function<std::string>(
+          "--fidelity",
+          [&options](const std::string& name) {
+            const auto& known = engine::fidelity_names;
+            const auto found = std::ranges::find(known, name);
+            options.fidelity = static_cast<engine::Fidelity>(found - known.begin());
+          },
+          "How large a version is run (default: the study's, else standard)")
+      ->check(CLI::IsMember({"draft", "standard", "paper"}));
+  command.add_option("--frames", options.frames, "Write .vtp files and pictures there")
+      ->type_name("DIR");
+  command
+      .add_option("--frame-interval", options.frame_interval, "Simulated seconds between frames")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-6, 1e6));
+  add_json(command, options.form, "One JSON object on standard output");
+  command.footer(evaluate_footer);
+  command.callback([&] { work = [&] { return evaluate_command(options); }; });
+}
+
+void add_calibrate(CLI::App& app, CalibrateCommand& options, Work& work) {
+  CLI::App& command = *app.add_subcommand("calibrate", "Calibrate a study and write its report");
+  command.add_option("study", options.study, "Study document; - is standard input")
+      ->required()
+      ->type_name("STUDY.json");
+  add_database(command, options.database);
+  command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
+      ->check(CLI::Range(1, 4096));
+  command.add_option("--report", options.report, "Report (default: beside the database)")
+      ->type_name("FILE");
+  command.add_flag_callback(
+      "--no-pictures",
+      [&options] { options.pictures = false; },
+      "Do not run the best set once more for the report's pictures");
+  add_json(command, options.form, "The calibration's document on standard output");
+  command.footer(calibrate_footer);
+  command.callback([&] {
+    work = [&] {
+      if (options.database.empty()) options.database = default_database();
+      return calibrate_command(options);
+    };
+  });
+}
+
+void add_report(CLI::App& app, ReportCommand& options, Work& work) {
+  CLI::App& command = *app.add_subcommand("report", "Write the HTML report of a calibration");
+  command.add_option("id", options.id, "Calibration")->required();
+  add_database(command, options.database);
+  command.add_option("--output", options.output, "Report (default: repose-report-ID.html)")
+      ->type_name("FILE");
+  command.add_flag_callback(
+      "--no-pictures",
+      [&options] { options.pictures = false; },
+      "Do not run the best set once more for the report's pictures");
+  command.callback([&] {
+    work = [&] {
+      if (options.database.empty()) options.database = default_database();
+      return report_command(options);
+    };
+  });
+}
+
+void add_list(CLI::App& app, ListCommand& options, Work& work) {
+  CLI::App& command = *app.add_subcommand("list", "List the calibrations, newest first");
+  add_database(command, options.database);
+  command.add_option("--limit", options.limit, "At most so many")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  add_json(command, options.form, "One JSON object on standard output");
+  command.callback([&] {
+    work = [&] {
+      if (options.database.empty()) options.database = default_database();
+      return list_command(options);
+    };
+  });
+}
+
+void add_show(CLI::App& app, ShowCommand& options, Work& work) {
+  CLI::App& command = *app.add_subcommand("show", "Print the answer of a calibration");
+  command.add_option("id", options.id, "Calibration")->required();
+  add_database(command, options.database);
+  add_json(command, options.form, "The calibration's document on standard output");
+  command.callback([&] {
+    work = [&] {
+      if (options.database.empty()) options.database = default_database();
+      return show_command(options);
+    };
+  });
+}
+
+void add_serve(CLI::App& app, ServeCommand& options, Work& work) {
+  CLI::App& command = *app.add_subcommand("serve", "Start the service: HTTP API and web page");
+  command.add_option("--host", options.host, "Address to listen on")->capture_default_str();
+  command.add_option("--port", options.port, "Port; 0 is any free one")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
+  add_database(command, options.database);
+  command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
+      ->check(CLI::Range(1, 4096));
+  command.callback([&] {
+    work = [&] {
+      if (options.database.empty()) options.database = default_database();
+      return serve_command(options);
+    };
+  });
+}
+
+void add_catalogue(CLI::App& app, Form& form, std::filesystem::path& folder, Work& work) {
+  CLI::App& catalogue =
+      *app.add_subcommand("catalogue", "Print every effect, experiment and material property");
+  form = Form::json;
+  auto* json = catalogue.add_flag_callback(
+      "--json", [&form] { form = Form::json; }, "As JSON (default)");
+  catalogue
+      .add_flag_callback(
+          "--markdown", [&form] { form = Form::markdown; }, "As tables for people")
+      ->excludes(json);
+  catalogue.callback([&] { work = [&] { return catalogue_command(form); }; });
+  CLI::App& schema = *app.add_subcommand("schema", "Print or write the JSON schemas");
+  schema.add_option("--write", folder, "Write them there")->type_name("DIR");
+  schema.callback([&] { work = [&] { return schema_command(folder); }; });
+}
+
+/// Every command's arguments, alive while the command runs.
+struct Commands {
+  EvaluateCommand evaluate;
+  CalibrateCommand calibrate;
+  ReportCommand report;
+  ListCommand list;
+  ShowCommand show;
+  ServeCommand serve;
+  Form catalogue_form = Form::json;
+  std::filesystem::path schema_folder;
+};
+
+int usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) return app.exit(error);  // help and version
+  std::string command = "repose";
+  for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
+  std::cerr << "repose: " << error.what() << "\nTry `" << command << " --help`.\n";
+  return exit_code::misused;
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  CLI::App app("repose: calibrates DEM parameters against bulk measurements", "repose");
+  app.set_version_flag("--version", "repose " + std::string(engine::version()));
+  app.require_subcommand(1);
+  app.footer(main_footer);
+  Commands commands;
+  Work work;
+  add_evaluate(app, commands.evaluate, work);
+  add_calibrate(app, commands.calibrate, work);
+  add_report(app, commands.report, work);
+  add_serve(app, commands.serve, work);
+  add_list(app, commands.list, work);
+  add_show(app, commands.show, work);
+  add_catalogue(app, commands.catalogue_form, commands.schema_folder, work);
+  CLI::App& answer = *app.add_subcommand("answer", "Answer one trial from standard input");
+  answer.group("");  // hidden: for the worker pool
+  answer.callback([&] { work = answer_command; });
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return usage_error(app, error);
+  }
+  try {
+    return work();
+  } catch (const std::exception& error) {
+    std::cerr << "repose: " << error.what() << "\n";
+    return exit_code::failed;
+  }
+}
+
+}  // namespace repose::server

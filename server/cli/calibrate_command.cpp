@@ -1,0 +1,86 @@
+#include <iostream>
+#include <string>
+#include <unistd.h>
+#include <utility>
+
+#include "server/cli/commands.hpp"
+#include "server/cli/exit_code.hpp"
+#include "server/cli/input.hpp"
+#include "server/cli/interrupt.hpp"
+#include "server/cli/progress.hpp"
+#include "server/cli/summary.hpp"
+#include "server/service.hpp"
+
+namespace repose::server {
+
+namespace {
+
+ServiceOptions options_of(const CalibrateCommand& command) {
+  ServiceOptions options;
+  options.database = command.database;
+  options.workers = command.workers;
+  options.program = own_program();
+  return options;
+}
+
+Answer<std::string> run(const CalibrateCommand& command,
+                        const StudyInput& study,
+                        const Interrupt& interrupt) {
+  Service service(options_of(command));
+  ProgressDisplay display(study.calibration, std::cerr, isatty(STDERR_FILENO) == 1);
+  CalibrationEvents events;
+  events.progress = [&](const calibrator::Progress& progress) { display.progress(progress); };
+  events.trial = [&](std::size_t done, std::size_t all, bool stored) {
+    display.trial(done, all, stored);
+  };
+  auto answer = service.calibrate(study.text, interrupt.token(), events);
+  display.finish();
+  return answer;
+}
+
+std::filesystem::path report_path(const CalibrateCommand& command, std::int64_t id) {
+  if (!command.report.empty()) return command.report;
+  return command.database.parent_path() / ("repose-report-" + std::to_string(id) + ".html");
+}
+
+int stopped(const CalibrateCommand& command) {
+  std::cerr << "repose: stopped. Every finished evaluation is kept in " << command.database.string()
+            << "; the same command takes the calibration up where it was:\n  repose calibrate "
+            << command.study.string() << " --db " << command.database.string() << "\n";
+  return exit_code::interrupted;
+}
+
+}  // namespace
+
+int calibrate_command(const CalibrateCommand& command) {
+  const bool json = command.form == Form::json;
+  const auto study = read_study(command.study);
+  if (!study) return report_error(study.error(), json);
+  const Interrupt interrupt;
+  const auto answer = run(command, *study, interrupt);
+  if (!answer) {
+    if (interrupt.happened()) return stopped(command);
+    return report_error({answer.error().message, answer.error().problems}, json);
+  }
+  const auto document = parse_document(*answer);
+  if (json) std::cout << *answer << "\n";
+  if (interrupt.happened()) return stopped(command);
+  if (!document) {
+    std::cerr << "repose: " << document.error() << "\n";
+    return exit_code::failed;
+  }
+  if (!json) std::cout << print_summary(*document);
+  if (!document->fit) {
+    std::cerr << "repose: calibration " << document->id << " has no fit"
+              << (document->error.empty() ? "" : ": " + document->error) << "\n";
+    return exit_code::failed;
+  }
+  const auto path = report_path(command, document->id);
+  write_report(*document, {path, command.database, command.pictures}, interrupt.token());
+  (json ? std::cerr : std::cout) << "\nReport: " << path.string() << "\nCalibration "
+                                 << document->id << " in " << command.database.string() << "\n";
+  return document->fit->stop == calibrator::StopReason::failed ? exit_code::failed
+                                                               : exit_code::done;
+}
+
+}  // namespace repose::server

@@ -1,0 +1,79 @@
+/// Commands: what each word of the command line does. Arguments come parsed; the exit code goes
+/// back.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/experiment.hpp"
+
+namespace repose::server {
+
+enum class Form { text, json, markdown };
+
+struct EvaluateCommand {
+  std::string experiment;
+  std::filesystem::path study;          ///< may be empty
+  std::vector<std::string> parameters;  ///< FIELD:grain-grain=VALUE
+  std::vector<std::string> settings;    ///< NAME=VALUE
+  std::uint64_t seed = 1;
+  int replicates = 1;
+  std::optional<engine::Fidelity> fidelity;
+  std::filesystem::path frames;  ///< folder; empty: none written
+  double frame_interval = 0.02;  ///< s of simulated time
+  Form form = Form::text;
+};
+int evaluate_command(const EvaluateCommand& command);
+
+/// One trial document on standard input, its answer on standard output.
+int answer_command();
+
+struct CalibrateCommand {
+  std::filesystem::path study;
+  std::filesystem::path database;
+  unsigned workers = 0;
+  std::filesystem::path report;  ///< file; empty: beside the database
+  bool pictures = true;
+  Form form = Form::text;
+};
+int calibrate_command(const CalibrateCommand& command);
+
+struct ReportCommand {
+  std::int64_t id = 0;
+  std::filesystem::path database;
+  std::filesystem::path output;  ///< file; empty: repose-report-ID.html in the working folder
+  bool pictures = true;
+};
+int report_command(const ReportCommand& command);
+
+struct ListCommand {
+  std::filesystem::path database;
+  int limit = 50;
+  Form form = Form::text;
+};
+int list_command(const ListCommand& command);
+
+struct ShowCommand {
+  std::int64_t id = 0;
+  std::filesystem::path database;
+  Form form = Form::text;
+};
+int show_command(const ShowCommand& command);
+
+struct ServeCommand {
+  std::string host = "127.0.0.1";
+  int port = 8080;
+  std::filesystem::path database;
+  unsigned workers = 0;
+};
+int serve_command(const ServeCommand& command);
+
+int catalogue_command(Form form);
+
+/// Prints the names of the schemas, or writes all of them into a folder.
+int schema_command(const std::filesystem::path& folder);
+
+}  // namespace repose::server

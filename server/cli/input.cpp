@@ -1,0 +1,93 @@
+#include "server/cli/input.hpp"
+
+#include <chrono>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include "server/cli/exit_code.hpp"
+#include "server/json/calibration_json.hpp"
+#include "server/json/replicates_json.hpp"
+
+namespace repose::server {
+
+using engine::Result;
+using engine::Unexpected;
+
+namespace fs = std::filesystem;
+
+Result<std::string, InputError> read_text(const fs::path& path) {
+  if (path == "-") {
+    return std::string(std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>());
+  }
+  if (fs::is_directory(path)) {
+    return Unexpected{InputError{path.string() + " is a folder; name a file in it", {}}};
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    const bool there = fs::exists(path);
+    return Unexpected{InputError{path.string() + (there ? " cannot be read; check its permissions"
+                                                        : " does not exist; name a study file, or "
+                                                          "- for standard input"),
+                                 {}}};
+  }
+  return std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+}
+
+Result<StudyInput, InputError> read_study(const fs::path& path) {
+  auto text = read_text(path);
+  if (!text) return Unexpected{text.error()};
+  auto calibration = parse_calibration(*text);
+  if (!calibration) {
+    const std::size_t count = calibration.error().size();
+    return Unexpected{InputError{path.string() + " is no study: " + std::to_string(count) +
+                                     (count == 1 ? " problem" : " problems"),
+                                 std::move(calibration).error()}};
+  }
+  return StudyInput{*std::move(text), *std::move(calibration)};
+}
+
+int report_error(const InputError& error, bool json) {
+  std::cerr << "repose: " << error.message << "\n";
+  for (const Problem& problem : error.problems) {
+    std::cerr << "  " << (problem.pointer.empty() ? "the document" : problem.pointer) << ": "
+              << problem.message;
+    if (!problem.found.empty()) std::cerr << "\n      found:   " << problem.found;
+    if (!problem.allowed.empty()) std::cerr << "\n      allowed: " << problem.allowed;
+    std::cerr << "\n";
+  }
+  if (json) std::cout << print_error(error.message, error.problems) << "\n";
+  return exit_code::misused;
+}
+
+fs::path default_database() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string_view(value == nullptr ? "" : value);
+  };
+  fs::path path = variable("REPOSE_DB");
+  if (path.empty()) {
+    fs::path data = variable("XDG_DATA_HOME");
+    if (data.empty()) data = fs::path(variable("HOME")) / ".local" / "share";
+    path = data / "repose" / "repose.db";
+  }
+  if (path.has_parent_path()) fs::create_directories(path.parent_path());
+  return path;
+}
+
+fs::path own_program() { return fs::read_symlink("/proc/self/exe"); }
+
+std::string time_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return {text, length};
+}
+
+}  // namespace repose::server

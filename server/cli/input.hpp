@@ -1,0 +1,42 @@
+/// Input: files and studies that a command is given, and where its database lies.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "calibrator/calibration.hpp"
+#include "engine/result.hpp"
+#include "server/json/problem.hpp"
+
+namespace repose::server {
+
+/// Bad input: what to tell, and its parts where there are any.
+struct InputError {
+  std::string message;
+  Problems problems;
+};
+
+/// The whole of a file; "-" is standard input.
+engine::Result<std::string, InputError> read_text(const std::filesystem::path& path);
+
+struct StudyInput {
+  std::string text;
+  calibrator::Calibration calibration;
+};
+
+engine::Result<StudyInput, InputError> read_study(const std::filesystem::path& path);
+
+/// Prints to standard error; as a JSON object to standard output too where one is awaited there.
+/// Returns the exit code.
+int report_error(const InputError& error, bool json);
+
+/// $REPOSE_DB, else repose/repose.db in $XDG_DATA_HOME or ~/.local/share. The folder is made.
+std::filesystem::path default_database();
+
+/// The file of this program, which starts itself to answer single trials.
+std::filesystem::path own_program();
+
+/// The time now, ISO 8601, UTC.
+std::string time_now();
+
+}  // namespace repose::server

@@ -1,0 +1,97 @@
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include "server/cli/commands.hpp"
+#include "server/cli/exit_code.hpp"
+#include "server/cli/input.hpp"
+#include "server/cli/interrupt.hpp"
+#include "server/cli/summary.hpp"
+#include "server/cli/text_table.hpp"
+#include "server/json/report_json.hpp"
+#include "server/service.hpp"
+
+namespace repose::server {
+
+namespace {
+
+/// Nothing, with a word on standard error, where there is no database to look into.
+bool database_is_there(const std::filesystem::path& path) {
+  if (std::filesystem::exists(path)) return true;
+  std::cerr << "repose: there is no database " << path.string()
+            << "; --db FILE or REPOSE_DB names another, `repose calibrate` makes one\n";
+  return false;
+}
+
+/// The text of a calibration's document.
+std::optional<std::string> find(std::int64_t id, const std::filesystem::path& database) {
+  if (!database_is_there(database)) return std::nullopt;
+  ServiceOptions options;
+  options.database = database;
+  const Service service(options);
+  auto answer = service.calibration(id);
+  if (answer) return *std::move(answer);
+  std::cerr << "repose: " << answer.error().message << "; `repose list` shows those there are\n";
+  return std::nullopt;
+}
+
+std::optional<CalibrationDocument> read(const std::string& text) {
+  auto document = parse_document(text);
+  if (document) return *std::move(document);
+  std::cerr << "repose: " << document.error() << "\n";
+  return std::nullopt;
+}
+
+}  // namespace
+
+int report_command(const ReportCommand& command) {
+  const auto text = find(command.id, command.database);
+  if (!text) return exit_code::misused;
+  const auto document = read(*text);
+  if (!document) return exit_code::failed;
+  const auto path =
+      command.output.empty()
+          ? std::filesystem::path("repose-report-" + std::to_string(command.id) + ".html")
+          : command.output;
+  const Interrupt interrupt;
+  write_report(*document, {path, command.database, command.pictures}, interrupt.token());
+  if (interrupt.happened()) {
+    std::cerr << "repose: stopped; the report has no pictures\n";
+  }
+  std::cout << path.string() << "\n";
+  return interrupt.happened() ? exit_code::interrupted : exit_code::done;
+}
+
+int list_command(const ListCommand& command) {
+  if (!database_is_there(command.database)) return exit_code::misused;
+  ServiceOptions options;
+  options.database = command.database;
+  const Service service(options);
+  const std::string text = service.calibrations(command.limit, std::nullopt);
+  if (command.form == Form::json) {
+    std::cout << text << "\n";
+    return exit_code::done;
+  }
+  TextTable table({"name", "id", "state", "created"});
+  for (const CalibrationItem& item : parse_items(text)) {
+    table.row({item.name, std::to_string(item.id), item.state, item.created_at});
+  }
+  std::cout << table.str();
+  return exit_code::done;
+}
+
+int show_command(const ShowCommand& command) {
+  const auto text = find(command.id, command.database);
+  if (!text) return exit_code::misused;
+  if (command.form == Form::json) {
+    std::cout << *text << "\n";
+    return exit_code::done;
+  }
+  const auto document = read(*text);
+  if (!document) return exit_code::failed;
+  std::cout << print_summary(*document);
+  return exit_code::done;
+}
+
+}  // namespace repose::server
