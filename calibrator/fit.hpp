@@ -93,6 +93,7 @@ struct Progress {
   double misfit = 0.0;            ///< smallest expected misfit so far; NaN before there is one
   std::vector<double> predicted;  ///< SI, per measurement, there
   std::vector<double> z;          ///< per measurement, there
+  engine::ParameterSet best;      ///< there: what would be recommended now; empty before
 };
 
 }  // namespace repose::calibrator

@@ -1,0 +1,254 @@
+#include "calibrator/proposal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "calibrator/optimiser.hpp"
+#include "engine/random.hpp"
+
+namespace repose::calibrator {
+namespace {
+
+using Eigen::Index;
+
+/// Closer than this two points are one.
+double smallest_gap(std::size_t dimensions) {
+  return 0.02 * std::sqrt(static_cast<double>(dimensions));
+}
+
+/// The evaluated points of smallest expected misfit, best first.
+std::vector<UnitPoint> best_sites(const Outlook& outlook, std::size_t count) {
+  std::vector<std::pair<double, std::size_t>> ranked;
+  for (std::size_t i = 0; i < outlook.ledger.sites().size(); ++i) {
+    const Site& site = outlook.ledger.sites()[i];
+    const bool useful = std::ranges::any_of(site.searched, &SiteRun::succeeded);
+    if (!useful) continue;
+    ranked.emplace_back(expected_misfit(outlook.surrogate, outlook.targets, site.at), i);
+  }
+  std::ranges::sort(ranked);
+  std::vector<UnitPoint> best;
+  for (std::size_t i = 0; i < std::min(count, ranked.size()); ++i) {
+    best.push_back(outlook.ledger.sites()[ranked[i].second].at);
+  }
+  return best;
+}
+
+/// Expected improvement with its fixed draws.
+class Improvement {
+ public:
+  Improvement(const Outlook& outlook, double reference)
+      : reference_(reference), softness_(0.05 * (1.0 + reference)) {
+    constexpr Index pairs = 32;  // S = 64 with their mirror images
+    const auto m = static_cast<Index>(outlook.targets.size());
+    draws_.resize(m, 2 * pairs);
+    engine::Random random(outlook.ledger.calibration().seed, engine::Purpose::proposal);
+    for (Index s = 0; s < pairs; ++s) {
+      for (Index j = 0; j < m; ++j) {
+        draws_(j, s) = random.normal();
+        draws_(j, s + pairs) = -draws_(j, s);
+      }
+    }
+  }
+
+  [[nodiscard]] double at(std::span<const Residual> residuals) const {
+    Eigen::ArrayXd misfits = Eigen::ArrayXd::Zero(draws_.cols());
+    for (Index j = 0; j < draws_.rows(); ++j) {
+      const Residual& r = residuals[static_cast<std::size_t>(j)];
+      misfits += (r.mean + r.deviation * draws_.row(j)).square().transpose();
+    }
+    double sum = 0.0;
+    for (const double q : misfits) {
+      const double x = (reference_ - q) / softness_;
+      sum += x > 30.0 ? x : std::log1p(std::exp(x));  // beyond 30 the two are equal in double
+    }
+    return softness_ * sum / static_cast<double>(misfits.size());
+  }
+
+ private:
+  double reference_;
+  double softness_;
+  Eigen::ArrayXXd draws_;
+};
+
+/// How many of a batch repeat the recommended point instead of exploring (calibration.md 7.6).
+int repeats_of_recommended(const Outlook& outlook,
+                           const UnitPoint& recommended,
+                           int count,
+                           int round) {
+  int runs = 0;
+  for (const Site& site : outlook.ledger.sites()) {
+    if (site.at == recommended) runs = static_cast<int>(site.searched.size());
+  }
+  const auto m = static_cast<double>(outlook.targets.size());
+  const Scatter scatter = outlook.ledger.scatter(Level::search);
+  double noise = 0.0;
+  for (const Target& target : outlook.targets) {
+    noise += scatter.variance[target.measurement] / target.variance;
+  }
+  const bool noisy = noise / std::max(runs, 1) > 0.25 * m && runs < 16;
+  if (noisy) return count >= 2 ? count / 2 : round % 2;
+  return count >= 4 ? 1 : 0;  // one slot of a batch exploits
+}
+
+}  // namespace
+
+std::vector<Residual> residuals(const Surrogate& surrogate,
+                                std::span<const Target> targets,
+                                std::span<const double> point) {
+  std::vector<Residual> result;
+  result.reserve(targets.size());
+  for (const Target& target : targets) {
+    const Belief belief = surrogate.at(target.measurement, point);
+    result.push_back({(belief.mean - target.value) / std::sqrt(target.variance),
+                      std::sqrt(belief.variance / target.variance)});
+  }
+  return result;
+}
+
+double expected_misfit(const Surrogate& surrogate,
+                       std::span<const Target> targets,
+                       std::span<const double> point) {
+  double sum = 0.0;
+  for (const Residual& r : residuals(surrogate, targets, point)) {
+    sum += r.mean * r.mean + r.deviation * r.deviation;
+  }
+  return sum;
+}
+
+Feasibility::Feasibility(std::span<const Site> sites) {
+  for (const Site& site : sites) {
+    double tried = 0.0;
+    double succeeded = 0.0;
+    for (const auto* runs : {&site.searched, &site.confirmed}) {
+      for (const SiteRun& run : *runs) {
+        tried += 1.0;
+        if (run.succeeded) succeeded += 1.0;
+      }
+    }
+    if (tried == 0.0) continue;
+    at_.push_back(site.at);
+    share_.push_back(succeeded / tried);
+    if (succeeded < tried) none_failed_ = false;
+  }
+}
+
+double Feasibility::at(std::span<const double> point) const {
+  if (none_failed_) return 1.0;
+  std::vector<std::pair<double, std::size_t>> near;
+  for (std::size_t i = 0; i < at_.size(); ++i) near.emplace_back(distance(at_[i], point), i);
+  const std::size_t voters = std::min<std::size_t>(5, near.size());
+  std::ranges::partial_sort(near, near.begin() + static_cast<std::ptrdiff_t>(voters));
+  double votes = 0.0;
+  double weights = 0.0;
+  for (std::size_t i = 0; i < voters; ++i) {
+    const double weight = 1.0 / (near[i].first * near[i].first + 1e-4);
+    weights += weight;
+    votes += weight * share_[near[i].second];
+  }
+  return std::clamp(votes / weights, 1e-3, 1.0);
+}
+
+CostModel::CostModel(std::span<const Site> sites) {
+  if (sites.empty()) return;
+  const auto d = static_cast<Index>(sites.front().at.size());
+  Eigen::MatrixXd normal = 1e-6 * Eigen::MatrixXd::Identity(d + 1, d + 1);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(d + 1);
+  Index count = 0;
+  for (const Site& site : sites) {
+    for (const SiteRun& run : site.searched) {
+      if (!run.succeeded || run.grain_steps <= 0.0) continue;
+      Eigen::VectorXd row(d + 1);
+      row(0) = 1.0;
+      for (Index k = 0; k < d; ++k) row(k + 1) = site.at[static_cast<std::size_t>(k)] - 0.5;
+      normal += row * row.transpose();
+      right += std::log(run.grain_steps) * row;
+      ++count;
+    }
+  }
+  if (count >= d + 2) slopes_ = normal.ldlt().solve(right);
+}
+
+double CostModel::logarithm_at(std::span<const double> point) const {
+  double sum = 0.0;
+  if (slopes_.size() == 0) return sum;
+  for (std::size_t k = 0; k < point.size(); ++k) {
+    sum += slopes_(static_cast<Index>(k) + 1) * (point[k] - 0.5);
+  }
+  return sum;
+}
+
+UnitPoint recommend(const Outlook& outlook, std::span<const UnitPoint> starts) {
+  const std::size_t d = outlook.ledger.space().dimensions();
+  const Feasibility feasibility(outlook.ledger.sites());
+  // A factor of P_ok in the likelihood is -2 log P_ok in the misfit.
+  const Objective objective = [&](std::span<const double> point) {
+    return expected_misfit(outlook.surrogate, outlook.targets, point) -
+           2.0 * std::log(feasibility.at(point));
+  };
+  std::vector<UnitPoint> from = best_sites(outlook, 3);
+  from.insert(from.end(), starts.begin(), starts.end());
+  return minimise(objective,
+                  unit_box(d),
+                  from,
+                  50 * static_cast<int>(d),
+                  {.evaluations = 40 + 20 * static_cast<int>(d)})
+      .at;
+}
+
+UnitPoint settle(const Outlook& outlook, const UnitPoint& point) {
+  const double gap = smallest_gap(point.size());
+  const double here = expected_misfit(outlook.surrogate, outlook.targets, point);
+  const UnitPoint* best = &point;
+  // A twentieth of a standard deviation squared per measurement is no loss.
+  double best_misfit = here + 0.05 * static_cast<double>(outlook.targets.size());
+  for (const Site& site : outlook.ledger.sites()) {
+    if (distance(site.at, point) > gap) continue;
+    const double there = expected_misfit(outlook.surrogate, outlook.targets, site.at);
+    if (there <= best_misfit) {
+      best_misfit = there;
+      best = &site.at;
+    }
+  }
+  return *best;
+}
+
+std::vector<UnitPoint> propose(const Outlook& outlook,
+                               const UnitPoint& recommended,
+                               int count,
+                               int round) {
+  const std::size_t d = outlook.ledger.space().dimensions();
+  const UnitPoint settled = settle(outlook, recommended);
+  std::vector<UnitPoint> chosen(
+      static_cast<std::size_t>(repeats_of_recommended(outlook, settled, count, round)), settled);
+  const Scatter scatter = outlook.ledger.scatter(Level::search);
+  const Feasibility feasibility(outlook.ledger.sites());
+  const CostModel cost(outlook.ledger.sites());
+  std::vector<UnitPoint> starts = best_sites(outlook, 3);
+  const double reference =
+      starts.empty() ? std::numeric_limits<double>::infinity()
+                     : expected_misfit(outlook.surrogate, outlook.targets, starts.front());
+  const Improvement improvement(outlook, reference);
+  starts.push_back(recommended);
+  while (chosen.size() < static_cast<std::size_t>(count)) {
+    const Surrogate believed = outlook.surrogate.believing(chosen, scatter.variance);
+    const Objective objective = [&](std::span<const double> point) {
+      const double gain = improvement.at(residuals(believed, outlook.targets, point));
+      return cost.logarithm_at(point) - std::log(feasibility.at(point)) -
+             std::log(std::max(gain, 1e-300));
+    };
+    const Minimum found =
+        minimise(objective, unit_box(d), starts, 50 * static_cast<int>(d), {.evaluations = 80});
+    const double gain = improvement.at(residuals(believed, outlook.targets, found.at));
+    // Where there is little to gain, better knowledge of the best is worth more (7.6 i).
+    const bool little = gain < 0.1 * static_cast<double>(outlook.targets.size());
+    chosen.push_back(little ? settled : settle(outlook, found.at));
+  }
+  return chosen;
+}
+
+}  // namespace repose::calibrator

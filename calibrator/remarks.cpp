@@ -1,0 +1,209 @@
+#include "calibrator/remarks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+
+namespace repose::calibrator {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  const int length = std::snprintf(text, sizeof text, "%.3g", value);
+  return {text, static_cast<std::size_t>(length)};
+}
+
+/// An SI value in the unit of its measurement.
+std::string quantity(double value, const Measurement& measurement) {
+  std::string text = number(value / measurement.unit.factor);
+  if (measurement.unit.symbol != "1") text += " " + std::string(measurement.unit.symbol);
+  return text;
+}
+
+/// "a", "a and b", "a, b and c".
+std::string enumerate(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+std::string plural(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+using Sentences = std::vector<std::string>;
+
+void on_identification(const Calibration& calibration, const Fit& fit, Sentences& out) {
+  if (fit.directions.empty()) return;
+  const auto learnt = static_cast<std::size_t>(
+      std::ranges::count_if(fit.directions, [](const Direction& d) { return d.learnt; }));
+  std::vector<std::string> open;
+  for (const FittedParameter& parameter : fit.parameters) {
+    if (parameter.lower_at_bound && parameter.upper_at_bound) {
+      open.push_back(parameter_name(parameter.key));
+    }
+  }
+  std::string text = "The data determine " + std::to_string(learnt) + " of " +
+                     plural(fit.directions.size(), "direction");
+  if (!open.empty()) {
+    text += "; " + enumerate(open) + (open.size() == 1 ? " is" : " are") +
+            " not determined: any value within the bounds fits equally well with the others "
+            "re-adjusted";
+  }
+  out.push_back(text + ".");
+
+  const auto fitted = static_cast<std::size_t>(
+      std::ranges::count(calibration.measurements, Role::fit, &Measurement::role));
+  if (fitted <= learnt) {
+    out.push_back("With " + plural(fitted, "fitted measurement") + " for " +
+                  plural(calibration.free.size(), "free parameter") +
+                  " the model cannot be tested: add observables.");
+  }
+}
+
+void on_bounds(const Calibration& calibration,
+               const Outlook& outlook,
+               const Fit& fit,
+               Sentences& out) {
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const FittedParameter& parameter = fit.parameters[k];
+    const double u = outlook.ledger.space().coordinate(k, parameter.value);
+    const bool at_lower = u < 0.01 && !parameter.upper_at_bound;
+    const bool at_upper = u > 0.99 && !parameter.lower_at_bound;
+    if (!at_lower && !at_upper) continue;
+    out.push_back("The best value of " + parameter_name(calibration.free[k].key) + " lies at its " +
+                  (at_lower ? "lower" : "upper") + " bound: widen it if physics allows.");
+  }
+}
+
+void on_noise(const Calibration& calibration, const Fit& fit, Sentences& out) {
+  for (const Prediction& prediction : fit.predictions) {
+    const Measurement& measurement = calibration.measurements[prediction.measurement];
+    if (prediction.scatter <= measurement.standard_error) continue;
+    const double ratio = prediction.scatter / (0.5 * standard_uncertainty(measurement));
+    out.push_back("One run of " + measurement_name(measurement) + " scatters by " +
+                  quantity(prediction.scatter, measurement) +
+                  ", more than the measurement's standard error of " +
+                  quantity(measurement.standard_error, measurement) +
+                  ": enlarge the virtual experiment or average " +
+                  number(std::ceil(ratio * ratio)) + " runs.");
+  }
+}
+
+/// The misfit against its promised distribution (mean and variance of a sum of squared normals).
+void on_optimism(const Outlook& outlook, const Fit& fit, Sentences& out) {
+  double promised = 0.0;
+  double mean = 0.0;
+  double variance = 0.0;
+  for (const Target& target : outlook.targets) {
+    const Prediction& p = fit.predictions[target.measurement];
+    if (p.replicates == 0) return;
+    const Measurement& m = outlook.ledger.calibration().measurements[target.measurement];
+    const double error = std::hypot(standard_uncertainty(m), p.standard_error);
+    const double a = (p.emulated - m.value) / error;
+    const double b = std::hypot(p.emulated_deviation, p.standard_error) / error;
+    promised += a * a;
+    mean += a * a + b * b;
+    variance += 2.0 * b * b * b * b + 4.0 * a * a * b * b;
+  }
+  if (fit.misfit > mean + 2.0 * std::sqrt(variance)) {
+    out.push_back("Fresh replicates give a misfit of " + number(fit.misfit) +
+                  " where the emulator promised " + number(promised) +
+                  ": the replicates are to be believed.");
+  }
+}
+
+void on_emulator(const Outlook& outlook, Sentences& out) {
+  const auto& measurements = outlook.ledger.calibration().measurements;
+  for (std::size_t j = 0; j < measurements.size(); ++j) {
+    const auto& process = outlook.surrogate.process(j);
+    if (!process || process->leave_one_out() <= 2.0) continue;
+    out.push_back("The emulator of " + measurement_name(measurements[j]) +
+                  " predicts a run it has not seen " + number(std::sqrt(process->leave_one_out())) +
+                  " times worse than it should: its intervals were widened by that factor.");
+  }
+}
+
+void on_fidelity(const Calibration& calibration, const Fit& fit, Sentences& out) {
+  for (std::size_t j = 0; j < fit.offset_error.size(); ++j) {
+    const Measurement& measurement = calibration.measurements[j];
+    if (fit.offset_error[j] <= measurement.standard_error) continue;
+    out.push_back("What the confirming fidelity adds to " + measurement_name(measurement) +
+                  " is known to " + quantity(fit.offset_error[j], measurement) +
+                  " only, worse than the measurement itself: search at the confirming fidelity.");
+  }
+}
+
+void on_verdict(const Calibration& calibration, const Fit& fit, Sentences& out) {
+  if (fit.stop == StopReason::implausible) {
+    out.emplace_back(
+        "No parameter set within the bounds comes within three standard errors of the "
+        "measurements: physics is missing, or a bound or a standard error is wrong.");
+  }
+  if (fit.stop == StopReason::cancelled) {
+    out.emplace_back("The search was cancelled before fresh replicates confirmed its best set.");
+  }
+  for (const Prediction& prediction : fit.predictions) {
+    const Measurement& measurement = calibration.measurements[prediction.measurement];
+    if (measurement.role != Role::held_out || prediction.replicates == 0) continue;
+    if (std::abs(prediction.z) <= 2.0) continue;
+    out.push_back("The held-out " + measurement_name(measurement) +
+                  " is not predicted: " + quantity(prediction.predicted, measurement) +
+                  " against " + quantity(measurement.value, measurement) + " measured, " +
+                  number(std::abs(prediction.z)) + " standard errors apart.");
+  }
+}
+
+}  // namespace
+
+std::string parameter_name(const engine::ParameterKey& key) {
+  const std::string text = engine::to_string(key);
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return text;
+  return text.substr(colon + 1) + " " + text.substr(0, colon);
+}
+
+std::string measurement_name(const Measurement& measurement) {
+  return measurement.experiment.name + " " + measurement.observable;
+}
+
+std::vector<std::string> remarks(const Outlook& outlook, const Fit& fit) {
+  const Calibration& calibration = outlook.ledger.calibration();
+  Sentences out;
+  on_verdict(calibration, fit, out);
+  on_identification(calibration, fit, out);
+  on_bounds(calibration, outlook, fit, out);
+  on_optimism(outlook, fit, out);
+  on_noise(calibration, fit, out);
+  on_fidelity(calibration, fit, out);
+  on_emulator(outlook, out);
+  if (fit.failed > 0) {
+    out.push_back(std::to_string(fit.failed) + " of " +
+                  plural(static_cast<std::size_t>(fit.evaluations), "evaluation") +
+                  " failed, most often with " + outlook.ledger.commonest_failure() + ".");
+  }
+  return out;
+}
+
+std::string too_few_succeeded(const Ledger& ledger, int succeeded, int needed) {
+  std::string text = "Only " + std::to_string(succeeded) + " of " +
+                     plural(static_cast<std::size_t>(ledger.spent()), "evaluation") +
+                     " succeeded, and " + std::to_string(needed) + " are needed to learn from";
+  const std::string failure = ledger.commonest_failure();
+  if (!failure.empty()) text += "; the commonest failure: " + failure;
+  return text + ".";
+}
+
+std::string budget_too_small(const Calibration& calibration, int needed) {
+  return "The budget of " +
+         plural(static_cast<std::size_t>(std::max(calibration.budget.evaluations, 0)),
+                "evaluation") +
+         " is too small: " + plural(calibration.free.size(), "free parameter") + " need at least " +
+         std::to_string(needed) + ".";
+}
+
+}  // namespace repose::calibrator
