@@ -1,5 +1,5 @@
-/// The study document (schemas/calibration.schema.json) <-> Calibration. Parsed, checked and converted
-/// to SI once, here.
+/// The study document (schemas/calibration.schema.json) <-> Calibration. Parsed, checked and
+/// converted to SI once, here.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-/// Trials and evaluations as documents: on the wire, in the database, and between the service and its
-/// workers.
+/// Trials and evaluations as documents: on the wire, in the database, and between the service and
+/// its workers.
 #pragma once
 
 #include <string>
@@ -16,8 +16,8 @@ namespace repose::server {
 std::string print_trial(const engine::Trial& trial);
 engine::Result<engine::Trial, Problems> parse_trial(std::string_view text);
 
-/// SHA-256 (hexadecimal) of the engine's version and the canonical question: the evaluation's name in
-/// the store.
+/// SHA-256 (hexadecimal) of the engine's version and the canonical question: the evaluation's name
+/// in the store.
 std::string evaluation_key(const engine::Trial& trial);
 
 /// The answer: outcome and effort, without the question.

@@ -1,0 +1,48 @@
+/// Study: a study document while it is read: the calibration so far, and where each part of it
+/// stands, for the checks that need several parts at once.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "calibrator/calibration.hpp"
+#include "server/json/place.hpp"
+
+namespace repose::server {
+
+/// The part of the document that gives a parameter its value.
+enum class Part : std::uint8_t { materials, fixed, free, tied };
+
+struct Study {
+  struct Claim {
+    Part part;
+    std::string pointer;
+  };
+  struct PlacedTie {
+    calibrator::Tie tie;
+    Place place;
+  };
+
+  calibrator::Calibration calibration;
+  /// Every parameter the document names, also where its value has a problem: so one mistake is not
+  /// reported as a second one.
+  std::map<engine::ParameterKey, Claim> claims;
+  std::vector<PlacedTie> ties;
+  std::size_t free_named = 0;    ///< entries of `free`, whatever they are worth
+  std::size_t fitted_named = 0;  ///< measurements that are not held out, likewise
+};
+
+void read_materials(const Place& place, Study& study);
+void read_fixed(const Place& place, Study& study);
+void read_free(const Place& place, Study& study);
+void read_tied(const Place& place, Study& study);
+void read_measurements(const Place& place, Study& study);
+
+/// What only the whole document tells: ties that lead nowhere, materials that lack a property,
+/// nothing to fit, too little to spend.
+void check_study(const Place& document, const Study& study);
+
+}  // namespace repose::server

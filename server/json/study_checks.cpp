@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "engine/catalogue.hpp"
+#include "server/json/codec.hpp"
+#include "server/json/study.hpp"
+
+namespace repose::server {
+
+using calibrator::Tie;
+using engine::Material;
+using engine::MaterialId;
+using engine::ParameterKey;
+
+namespace {
+
+/// Evaluations without which nothing can be learnt of that many parameters: a design of twice their
+/// number, four replicates, and four to confirm.
+std::size_t fewest_evaluations(std::size_t free) { return 2 * free + 8; }
+
+/// Whether an experiment needs to know the property: walls move as they are told and have no size.
+bool is_needed(MaterialId material, double Material::*property) {
+  return material == MaterialId::grain ||
+         (property != &Material::density && property != &Material::diameter);
+}
+
+void check_materials(const Place& document, const Study& study) {
+  for (std::size_t i = 0; i < engine::material_names.size(); ++i) {
+    const auto material = static_cast<MaterialId>(i);
+    for (const auto& field : engine::material_fields) {
+      if (!is_needed(material, field.member)) continue;
+      const ParameterKey key = engine::make_key(
+          std::string(Material::name) + "." + std::string(field.info.name), {material});
+      if (study.claims.contains(key)) continue;
+      const std::string name(engine::material_names[i]);
+      const auto at = pointer_to(pointer_to("/materials", name), field.info.name);
+      document.problems().add(
+          {at,
+           "the experiments need the " + std::string(field.info.name) + " of the " + name +
+               ": give it under materials, or make " + engine::to_string(key) + " free or tied",
+           "nothing",
+           R"({"value": number, "unit": )" + listed(units_like(field.info.unit)) + "}"});
+    }
+  }
+}
+
+const Tie* tie_of(const ParameterKey& key, const Study& study) {
+  const auto found = std::ranges::find(study.calibration.tied, key, &Tie::key);
+  return found == study.calibration.tied.end() ? nullptr : &*found;
+}
+
+/// Whether the ties that begin at a key come back to it.
+bool goes_round(const ParameterKey& start, const Study& study) {
+  std::set<ParameterKey> seen;
+  ParameterKey key = start;
+  while (seen.insert(key).second) {
+    const Tie* tie = tie_of(key, study);
+    if (tie == nullptr) return false;
+    key = tie->to;
+  }
+  return key == start;
+}
+
+/// The values that a free or fixed parameter may take, SI.
+std::pair<double, double> range_of(const ParameterKey& key, const Study& study) {
+  const auto& free = study.calibration.free;
+  const auto found = std::ranges::find(free, key, &calibrator::FreeParameter::key);
+  if (found != free.end()) return {found->lower, found->upper};
+  const double value = study.calibration.fixed.get_or(key, engine::absent);
+  return {value, value};
+}
+
+void check_reach(const Study::PlacedTie& placed, const Study& study) {
+  const engine::ParameterInfo* info = engine::find_parameter(placed.tie.key.field);
+  const auto [from, to] = range_of(placed.tie.to, study);
+  if (std::isnan(from)) return;  // has a problem of its own
+  const Place factor(
+      nullptr, pointer_to(placed.place.pointer(), "factor"), placed.place.problems());
+  const double low = std::min(placed.tie.factor * from, placed.tie.factor * to);
+  const double high = std::max(placed.tie.factor * from, placed.tie.factor * to);
+  const std::string what = engine::to_string(placed.tie.key) + " (factor " +
+                           short_number(placed.tie.factor) + " x " +
+                           engine::to_string(placed.tie.to) + ")";
+  const engine::FieldInfo& field = *info->field;
+  if (within_bounds(factor, high, field.unit, field, what)) {
+    within_bounds(factor, low, field.unit, field, what);
+  }
+}
+
+void check_tie(const Study::PlacedTie& placed, const Study& study) {
+  const std::string to = engine::to_string(placed.tie.to);
+  const Place at(nullptr, pointer_to(placed.place.pointer(), "to"), placed.place.problems());
+  const std::string allowed = "a parameter that is free or fixed";
+  if (goes_round(placed.tie.key, study)) {
+    at.complain("the ties go round in a circle: none of them has a value", to, allowed);
+    return;
+  }
+  const auto claim = study.claims.find(placed.tie.to);
+  if (claim == study.claims.end()) {
+    at.complain(to + " is neither free nor fixed, so nothing can follow it", to, allowed);
+    return;
+  }
+  if (claim->second.part == Part::tied) {
+    const Tie* next = tie_of(placed.tie.to, study);
+    const std::string advice =
+        next == nullptr ? "" : ": tie to " + engine::to_string(next->to) + " instead";
+    at.complain(to + " is tied itself" + advice, to, allowed);
+    return;
+  }
+  check_reach(placed, study);
+}
+
+}  // namespace
+
+void check_study(const Place& document, const Study& study) {
+  check_materials(document, study);
+  for (const Study::PlacedTie& tie : study.ties) check_tie(tie, study);
+  if (study.free_named == 0) {
+    document.problems().add(
+        {"/free",
+         "nothing is free, so there is nothing to calibrate",
+         "no free parameter",
+         "at least one {\"field\", \"between\", \"lower\", \"upper\", \"unit\"}"});
+  }
+  if (study.fitted_named == 0) {
+    document.problems().add({"/measurements",
+                             "no measurement is fitted, so there is nothing to calibrate to",
+                             "no measurement whose role is fit",
+                             "at least one measurement whose role is fit"});
+  }
+  const std::size_t fewest = fewest_evaluations(study.free_named);
+  const int spent = study.calibration.budget.evaluations;
+  if (study.free_named > 0 && static_cast<std::size_t>(spent) < fewest) {
+    document.problems().add({"/budget/evaluations",
+                             std::to_string(study.free_named) + " free parameters need at least " +
+                                 std::to_string(fewest) +
+                                 " evaluations (twice their number and eight)",
+                             std::to_string(spent),
+                             std::to_string(fewest) + " or more"});
+  }
+}
+
+}  // namespace repose::server
