@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <vector>
 
 #include "engine/catalogue.hpp"
+#include "server/json/codec.hpp"
+#include "server/json/place.hpp"
 #include "server/report/number_text.hpp"
 
 namespace repose::server {
@@ -29,29 +30,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blank) - first + 1);
 }
 
-/// Levenshtein's distance: insertions, deletions and changes of a letter.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t corner = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t change = corner + (a[i] == b[j] ? 0 : 1);
-      corner = row[j + 1];
-      row[j + 1] = std::min({change, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-std::string accepted_units(const engine::Dimension& dimension) {
-  std::string list;
-  for (const Unit& unit : engine::unit::all()) {
-    if (unit.dimension == dimension) list += (list.empty() ? "" : ", ") + std::string(unit.symbol);
-  }
-  return list;
-}
+std::string accepted_units(const Unit& unit) { return listed(units_like(unit)); }
 
 std::string range_text(const FieldInfo& field) {
   const auto shown = [&](double value) { return number_text(value / field.unit.factor); };
@@ -65,12 +44,8 @@ Result<double, std::string> parse_value(const FieldInfo& field, std::string_view
     if (text == field.choices[i]) return static_cast<double>(i);
   }
   if (!field.choices.empty()) {
-    std::string list;
-    for (const std::string_view choice : field.choices) {
-      list += (list.empty() ? "" : ", ") + std::string(choice);
-    }
     return Unexpected{quoted(text) + " is not a choice of " + std::string(field.name) +
-                      "; write one of " + list};
+                      "; write one of " + listed(field.choices)};
   }
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -84,13 +59,13 @@ Result<double, std::string> parse_value(const FieldInfo& field, std::string_view
     if (field.unit.dimension != engine::Dimension{}) {
       return Unexpected{quoted(text) + " lacks its unit; write " + std::string(text) +
                         std::string(field.unit.symbol) + ", or another of " +
-                        accepted_units(field.unit.dimension)};
+                        accepted_units(field.unit)};
     }
   } else {
     const std::optional<Unit> unit = engine::unit::find(symbol);
     if (!unit || unit->dimension != field.unit.dimension) {
       return Unexpected{quoted(symbol) + " is not a unit of " + std::string(field.name) +
-                        "; accepted are " + accepted_units(field.unit.dimension)};
+                        "; accepted are " + accepted_units(field.unit)};
     }
     value *= unit->factor;
   }
@@ -130,16 +105,6 @@ std::string wanted_key(std::string_view field, engine::Scope scope) {
 
 }  // namespace
 
-std::string nearest(std::string_view written, const std::vector<std::string_view>& names) {
-  const auto by_distance = [&](std::string_view a, std::string_view b) {
-    return distance(written, a) < distance(written, b);
-  };
-  const auto best = std::ranges::min_element(names, by_distance);
-  const std::size_t close = std::max<std::size_t>(2, written.size() / 3);
-  if (best == names.end() || distance(written, *best) > close) return ".";
-  return "; did you mean " + quoted(*best) + "?";
-}
-
 Result<ParameterAssignment, std::string> parse_parameter(std::string_view text) {
   const std::size_t equals = text.find('=');
   if (equals == text.npos) {
@@ -152,10 +117,9 @@ Result<ParameterAssignment, std::string> parse_parameter(std::string_view text) 
   const std::string_view field = left.substr(0, colon);
   const engine::ParameterInfo* info = engine::find_parameter(field);
   if (info == nullptr) {
-    const auto names = engine::parameter_names();
     return Unexpected{"there is no parameter " + quoted(field) +
-                      nearest(field, {names.begin(), names.end()}) +
-                      " `repose catalogue` lists them all"};
+                      did_you_mean(field, engine::parameter_names()) +
+                      "; `repose catalogue` lists them all"};
   }
   const auto between = parse_between(colon == left.npos ? "" : left.substr(colon + 1));
   if (!between || between->size() != engine::materials_of(info->scope)) {
@@ -178,11 +142,8 @@ Result<SettingAssignment, std::string> parse_setting(const engine::ExperimentInf
   const std::string_view name = trimmed(text.substr(0, equals));
   const auto field = std::ranges::find(info.settings, name, &FieldInfo::name);
   if (field == info.settings.end()) {
-    std::string list;
-    for (const std::string_view known : names)
-      list += (list.empty() ? "" : ", ") + std::string(known);
     return Unexpected{std::string(info.name) + " has no setting " + quoted(name) +
-                      nearest(name, names) + " It has " + list};
+                      did_you_mean(name, names) + "; it has " + listed(names)};
   }
   const auto value = parse_value(*field, text.substr(equals + 1));
   if (!value) return Unexpected{std::string(name) + ": " + value.error()};

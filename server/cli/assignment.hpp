@@ -4,7 +4,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "engine/experiment.hpp"
 #include "engine/result.hpp"
@@ -27,8 +26,5 @@ engine::Result<ParameterAssignment, std::string> parse_parameter(std::string_vie
 /// "speed=15 rpm", "source=stream"
 engine::Result<SettingAssignment, std::string> parse_setting(const engine::ExperimentInfo& info,
                                                              std::string_view text);
-
-/// How a sentence about an unknown name ends: "; did you mean 'x'?" where one is near, else ".".
-std::string nearest(std::string_view written, const std::vector<std::string_view>& names);
 
 }  // namespace repose::server

@@ -21,6 +21,7 @@
 #include "server/cli/reference_grain.hpp"
 #include "server/cli/text_table.hpp"
 #include "server/json/evaluation_json.hpp"
+#include "server/json/place.hpp"
 #include "server/json/replicates_json.hpp"
 #include "server/report/frame_files.hpp"
 #include "server/report/label.hpp"
@@ -80,13 +81,10 @@ Result<Trial, InputError> trial_of(const EvaluateCommand& command) {
   const engine::ExperimentInfo* info = engine::find_experiment(command.experiment);
   if (info == nullptr) {
     std::vector<std::string_view> names;
-    std::string list;
-    for (const auto& known : engine::experiment_catalogue()) {
-      names.push_back(known.name);
-      list += (list.empty() ? "" : ", ") + std::string(known.name);
-    }
+    for (const auto& known : engine::experiment_catalogue()) names.push_back(known.name);
     return Unexpected{InputError{"there is no experiment '" + command.experiment + "'" +
-                                     nearest(command.experiment, names) + " There are " + list,
+                                     did_you_mean(command.experiment, names) + "; there are " +
+                                     listed(names),
                                  {}}};
   }
   Trial trial;

@@ -4,16 +4,11 @@
 #include <cmath>
 #include <variant>
 
-#include <nlohmann/json.hpp>
+#include "server/json/text.hpp"
 
 namespace repose::server {
 
-using Json = nlohmann::ordered_json;
-
 namespace {
-
-/// JSON has no NaN.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json failure_json(const engine::Failure& failure) {
   return {{"kind", engine::failure_kind_names.at(static_cast<std::size_t>(failure.kind))},
@@ -39,7 +34,7 @@ Json run_json(const engine::Evaluation& evaluation, double wall_seconds) {
   } else {
     Json values = Json::object();
     for (const auto& seen : std::get<std::vector<engine::Observation>>(evaluation.outcome)) {
-      values[seen.name] = number(seen.value);
+      values[seen.name] = number_or_null(seen.value);
     }
     run["observations_si"] = std::move(values);
   }
@@ -92,14 +87,14 @@ std::string print_replicates(const Replicates& replicates, std::string_view engi
     for (const MeanObservation& seen : replicates.observations) {
       document["observations"].push_back(
           {{"name", seen.name},
-           {"value", number(seen.value / seen.unit.factor)},
-           {"standard_error", number(seen.standard_error / seen.unit.factor)},
+           {"value", number_or_null(seen.value / seen.unit.factor)},
+           {"standard_error", number_or_null(seen.standard_error / seen.unit.factor)},
            {"unit", seen.unit.symbol}});
     }
   }
   document.update(effort_json(replicates.effort()));
   document["wall_seconds"] = replicates.elapsed;
-  document["particle_steps_per_second"] = number(replicates.particle_steps_per_second());
+  document["particle_steps_per_second"] = number_or_null(replicates.particle_steps_per_second());
   document["seed"] = replicates.trial.seed;
   document["replicates"] = replicates.evaluations.size();
   document["parameters"] = Json::object();
@@ -112,7 +107,7 @@ std::string print_replicates(const Replicates& replicates, std::string_view engi
   for (std::size_t i = 0; i < replicates.evaluations.size(); ++i) {
     document["runs"].push_back(run_json(replicates.evaluations[i], replicates.wall_seconds.at(i)));
   }
-  return document.dump(2);
+  return to_text(document, 2);
 }
 
 std::string print_error(const std::string& message, const Problems& problems) {
@@ -123,7 +118,7 @@ std::string print_error(const std::string& message, const Problems& problems) {
                     {"found", problem.found},
                     {"allowed", problem.allowed}});
   }
-  return Json{{"error", {{"message", message}, {"problems", std::move(list)}}}}.dump(2);
+  return to_text(Json{{"error", {{"message", message}, {"problems", std::move(list)}}}}, 2);
 }
 
 }  // namespace repose::server

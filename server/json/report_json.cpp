@@ -1,6 +1,5 @@
 #include "server/json/report_json.hpp"
 
-#include <stdexcept>
 #include <utility>
 
 #include "server/json/calibration_json.hpp"
@@ -9,70 +8,84 @@
 
 namespace repose::server {
 
+using engine::Result;
+using engine::Unexpected;
+
 namespace {
 
 /// A text that may be missing or null.
-std::string text_or_empty(const Json& json, std::string_view name) {
-  const auto found = json.find(name);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+std::string text_member(const Json& document, const char* name) {
+  const auto found = document.find(name);
+  return found != document.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-CalibrationItem read_item(const Json& json) {
-  return {json.at("id").get<std::int64_t>(),
-          json.at("name").get<std::string>(),
-          json.at("state").get<std::string>(),
-          text_or_empty(json, "created_at")};
+const Json* object_member(const Json& document, const char* name) {
+  const auto found = document.find(name);
+  return found != document.end() && found->is_object() ? &*found : nullptr;
 }
 
-CalibrationDocument read_document(const Json& json) {
-  const CalibrationItem item = read_item(json);
-  CalibrationDocument document;
-  document.id = item.id;
-  document.name = item.name;
-  document.state = item.state;
-  document.created_at = item.created_at;
-  document.started_at = text_or_empty(json, "started_at");
-  document.finished_at = text_or_empty(json, "finished_at");
-  document.error = text_or_empty(json, "error");
+std::int64_t whole_member(const Json& document, const char* name) {
+  const auto found = document.find(name);
+  return found != document.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
+}
 
-  const auto study = json.find("study");
-  if (study != json.end() && study->is_object()) {
-    document.study = to_text(*study, 2);
-    auto calibration = parse_calibration(to_text(*study));
-    if (calibration) document.calibration = std::move(calibration).value();
-  }
-  const auto fit_json = json.find("fit");
-  if (document.calibration && fit_json != json.end() && fit_json->is_object()) {
-    document.engine_version = text_or_empty(*fit_json, "engine_version");
-    auto fit = parse_fit(*document.calibration, to_text(*fit_json));
-    if (!fit) throw std::invalid_argument(fit.error());
-    document.fit = std::move(fit).value();
-  }
-  return document;
+Result<Json, std::string> parse_own(std::string_view text) {
+  ProblemList problems;
+  auto json = parse_text(text, own_text(text), problems);
+  if (!json) return Unexpected{problems.all().front().message};
+  if (!json->is_object()) return Unexpected{std::string("the document is no object")};
+  return *std::move(json);
+}
+
+/// The sentence of an error, where the store keeps one: a text, or an object with a message.
+std::string error_of(const Json& document) {
+  const Json* object = object_member(document, "error");
+  return object != nullptr ? text_member(*object, "message") : text_member(document, "error");
 }
 
 }  // namespace
 
-engine::Result<CalibrationDocument, std::string> parse_document(std::string_view text) {
-  ProblemList problems;
-  const auto json = parse_text(text, own_text(text), problems);
-  if (!json) return engine::Unexpected{problems.all().front().message};
-  try {
-    return read_document(*json);
-  } catch (const std::exception& error) {
-    return engine::Unexpected{"this is no calibration's document: " + std::string(error.what())};
+Result<CalibrationDocument, std::string> parse_document(std::string_view text) {
+  const auto json = parse_own(text);
+  if (!json) return Unexpected{json.error()};
+  CalibrationDocument document;
+  document.id = whole_member(*json, "id");
+  document.name = text_member(*json, "name");
+  document.state = text_member(*json, "state");
+  document.created_at = text_member(*json, "created_at");
+  document.started_at = text_member(*json, "started_at");
+  document.finished_at = text_member(*json, "finished_at");
+  document.error = error_of(*json);
+  const Json* study = object_member(*json, "study");
+  if (study == nullptr) return document;
+  document.study = to_text(*study, 2);
+  auto calibration = parse_calibration(to_text(*study));
+  if (!calibration) {
+    const Problem& first = calibration.error().front();
+    return Unexpected{"the study of calibration " + std::to_string(document.id) +
+                      " cannot be read any more: " + first.pointer + ": " + first.message};
   }
+  document.calibration = *std::move(calibration);
+  const Json* fit = object_member(*json, "fit");
+  if (fit == nullptr) return document;
+  document.engine_version = text_member(*fit, "engine_version");
+  auto parsed = parse_fit(*document.calibration, to_text(*fit));
+  if (!parsed) return Unexpected{parsed.error()};
+  document.fit = *std::move(parsed);
+  return document;
 }
 
 std::vector<CalibrationItem> parse_items(std::string_view text) {
-  ProblemList problems;
-  const auto json = parse_text(text, own_text(text), problems);
-  std::vector<CalibrationItem> result;
-  if (!json || !json->is_object()) return result;
-  const auto items = json->find("items");
-  if (items == json->end()) return result;
-  for (const Json& item : *items) result.push_back(read_item(item));
-  return result;
+  std::vector<CalibrationItem> items;
+  const auto json = parse_own(text);
+  if (!json) return items;
+  for (const Json& item : json->value("items", Json::array())) {
+    items.push_back({whole_member(item, "id"),
+                     text_member(item, "name"),
+                     text_member(item, "state"),
+                     text_member(item, "created_at")});
+  }
+  return items;
 }
 
 }  // namespace repose::server

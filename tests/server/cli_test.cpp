@@ -58,7 +58,7 @@ TEST_CASE("a unit of another dimension is refused with those accepted", "[server
 TEST_CASE("an unknown field is refused with the nearest one", "[server]") {
   const auto set = parse_parameter("sliding_frction.coefficient:grain-grain=0.3");
   REQUIRE_FALSE(set);
-  CHECK_THAT(set.error(), Contains("did you mean 'sliding_friction.coefficient'?"));
+  CHECK_THAT(set.error(), Contains("did you mean \"sliding_friction.coefficient\"?"));
 }
 
 TEST_CASE("materials that are missing, unknown or too many are refused", "[server]") {
@@ -101,7 +101,7 @@ TEST_CASE("an unknown setting is refused with those there are", "[server]") {
   const auto* drop = engine::find_experiment("drop");
   REQUIRE(drop != nullptr);
   CHECK_THAT(parse_setting(*drop, "heigt=3m").error(),
-             Contains("did you mean 'height'?") && Contains("It has height"));
+             Contains("did you mean \"height\"?") && Contains("it has height"));
 }
 
 TEST_CASE("the reference grain names parameters of the catalogue within their bounds", "[server]") {

@@ -1,0 +1,153 @@
+// The program as a user meets it: words in, text and exit code out.
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+namespace fs = std::filesystem;
+using Catch::Contains;
+
+namespace {
+
+struct Ran {
+  std::string output;
+  int exit_code = -1;
+};
+
+/// Runs the program through the shell; standard error goes where `errors` says.
+Ran repose(const std::string& arguments, const std::string& errors = "/dev/null") {
+  const std::string command = std::string(REPOSE_PROGRAM) + " " + arguments + " 2>" + errors;
+  Ran ran;
+  FILE* pipe = popen(command.c_str(), "r");
+  REQUIRE(pipe != nullptr);
+  std::array<char, 4096> buffer{};
+  for (std::size_t count = 0; (count = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+    ran.output.append(buffer.data(), count);
+  }
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) ran.exit_code = WEXITSTATUS(status);
+  return ran;
+}
+
+/// A folder of its own, removed at the end.
+struct TemporaryFolder {
+  fs::path path;
+  TemporaryFolder() {
+    std::string pattern = (fs::temp_directory_path() / "repose_cli_XXXXXX").string();
+    path = mkdtemp(pattern.data());
+  }
+  ~TemporaryFolder() { fs::remove_all(path); }
+};
+
+constexpr const char* small_study = R"({
+  "name": "drop on a plate",
+  "materials": {
+    "grain": {"density": {"value": 1228, "unit": "kg/m3"}, "diameter": {"value": 6.496, "unit": "mm"},
+              "shear_modulus": {"value": 1.04, "unit": "MPa"}, "poisson_ratio": {"value": 0.25, "unit": "1"}},
+    "wall": {"shear_modulus": {"value": 1.04, "unit": "MPa"}, "poisson_ratio": {"value": 0.25, "unit": "1"}}
+  },
+  "free": [{"field": "restitution.coefficient", "between": ["grain", "wall"],
+            "lower": 0.3, "upper": 0.9, "unit": "1"}],
+  "measurements": [{"experiment": "drop", "observable": "restitution", "value": 0.6, "unit": "1",
+                    "standard_error": 0.01, "source": "a test"}],
+  "budget": {"evaluations": 24, "fidelity": "draft"},
+  "seed": 1
+})";
+
+}  // namespace
+
+TEST_CASE("evaluate --json prints exactly one JSON object", "[end_to_end]") {
+  const Ran ran = repose("evaluate drop --fidelity draft --json");
+  CHECK(ran.exit_code == 0);
+  const auto json = nlohmann::json::parse(ran.output);  // throws where more than one follows
+  CHECK(json.at("experiment") == "drop");
+  CHECK(json.at("fidelity") == "draft");
+  CHECK(json.at("observations").at(0).at("name") == "restitution");
+  CHECK(json.at("observations").at(0).at("value").get<double>() == Approx(0.6).margin(0.02));
+  CHECK(json.at("observations").at(0).at("standard_error").is_null());
+  CHECK(json.at("particle_steps_per_second").get<double>() > 0.0);
+  CHECK(json.at("replicates") == 1);
+  CHECK(json.contains("engine_version"));
+}
+
+TEST_CASE("the same evaluation gives the same bits", "[end_to_end]") {
+  const auto observed = [] {
+    const Ran ran = repose("evaluate drop --fidelity draft --seed 5 --json");
+    return nlohmann::json::parse(ran.output).at("observations").dump();
+  };
+  CHECK(observed() == observed());
+}
+
+TEST_CASE("a parameter that is set changes what is observed", "[end_to_end]") {
+  const Ran ran =
+      repose("evaluate drop --fidelity draft --json --set restitution.coefficient:grain-wall=0.3");
+  const auto json = nlohmann::json::parse(ran.output);
+  CHECK(json.at("observations").at(0).at("value").get<double>() == Approx(0.3).margin(0.02));
+}
+
+TEST_CASE("an experiment that fails is a failure in JSON and exit code 1", "[end_to_end]") {
+  const Ran ran = repose("evaluate kettle --fidelity draft --json --setting diameter=10mm");
+  CHECK(ran.exit_code == 1);
+  const auto json = nlohmann::json::parse(ran.output);
+  CHECK(json.at("failure").at("kind") == "bad_input");
+  CHECK_FALSE(json.contains("observations"));
+}
+
+TEST_CASE("bad usage is exit code 2 with a sentence on standard error", "[end_to_end]") {
+  for (const char* words : {"evaluate",
+                            "evaluate kettl",
+                            "evaluate drop --fidelity huge",
+                            "evaluate drop --set nonsense",
+                            "evaluate drop --replicates 0",
+                            "calibrate /nowhere/study.json",
+                            "fly"}) {
+    INFO(words);
+    const Ran silent = repose(words);
+    CHECK(silent.exit_code == 2);
+    CHECK(silent.output.empty());
+    CHECK_THAT(repose(words, "&1").output, Contains("repose: "));
+  }
+}
+
+TEST_CASE("help and version are no errors", "[end_to_end]") {
+  CHECK(repose("--help").exit_code == 0);
+  CHECK(repose("evaluate --help").exit_code == 0);
+  CHECK_THAT(repose("--version").output, Contains("repose 0."));
+}
+
+TEST_CASE("frames are written with an index", "[end_to_end]") {
+  const TemporaryFolder folder;
+  const Ran ran = repose("evaluate drop --fidelity draft --json --frames " + folder.path.string());
+  CHECK(ran.exit_code == 0);
+  CHECK(fs::exists(folder.path / "frames.pvd"));
+  CHECK(fs::exists(folder.path / "frame_00000.vtp"));
+}
+
+TEST_CASE("a study is calibrated, listed, shown and reported", "[end_to_end][slow]") {
+  const TemporaryFolder folder;
+  const std::string study = (folder.path / "study.json").string();
+  const std::string database = " --db " + (folder.path / "repose.db").string();
+  std::ofstream(study) << small_study;
+  const Ran calibrated = repose("calibrate " + study + database);
+  INFO(calibrated.output);
+  CHECK(calibrated.exit_code == 0);
+  CHECK_THAT(calibrated.output, Contains("The measurement is met within"));
+  CHECK_THAT(calibrated.output, Contains("restitution.coefficient:grain-wall"));
+  CHECK(fs::exists(folder.path / "repose-report-1.html"));
+
+  CHECK_THAT(repose("list" + database).output, Contains("drop on a plate"));
+  CHECK(nlohmann::json::parse(repose("show 1 --json" + database).output).at("state").is_string());
+  const std::string report = (folder.path / "r.html").string();
+  CHECK(repose("report 1 --no-pictures --output " + report + database).exit_code == 0);
+  CHECK(fs::file_size(report) > 10000);
+
+  const Ran again = repose("calibrate " + study + database + " --json --no-pictures");
+  CHECK(again.exit_code == 0);
+  CHECK(nlohmann::json::parse(again.output).contains("fit"));
+}
