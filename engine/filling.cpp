@@ -14,13 +14,16 @@ constexpr int most_layers = 4000;
 
 std::uint64_t rain(Session& session, const Rain& order) {
   session.request(order.grains);
-  const double pitch = 2.1 * session.largest_radius();
+  // Loose enough to lose the lattice on the way down: columns of near-touching grains settle into
+  // an ordered bed that is 3 % too light and rolls on its lowest layer.
+  const double pitch = 2.5 * session.largest_radius();
   const auto cells = [pitch](double length) { return std::max(1.0, std::floor(length / pitch)); };
   const double nx = cells(order.high_x - order.low_x);
   const double ny = cells(order.high_y - order.low_y);
   const Vec3 step{(order.high_x - order.low_x) / nx, (order.high_y - order.low_y) / ny, pitch};
   const double jitter_x = 0.5 * step.x - session.largest_radius();
   const double jitter_y = 0.5 * step.y - session.largest_radius();
+  const double jitter_z = 0.5 * step.z - session.largest_radius();
   Random random(session.seed(), Purpose::grain_position);
   std::uint64_t put = 0;
   for (int layer = 0; layer < most_layers && put < order.grains; ++layer) {
@@ -29,11 +32,10 @@ std::uint64_t rain(Session& session, const Rain& order) {
         GrainRow grain = session.next_grain();
         grain.x = order.low_x + (i + 0.5) * step.x + random.uniform(-jitter_x, jitter_x);
         grain.y = order.low_y + (j + 0.5) * step.y + random.uniform(-jitter_y, jitter_y);
-        grain.z = order.bottom + (layer + 0.5) * step.z;
-        // A little sideways motion, so that the lattice does not fall as one.
-        grain.vx = random.uniform(-0.1, 0.1);
-        grain.vy = random.uniform(-0.1, 0.1);
-        grain.vz = random.uniform(-0.1, 0.0);
+        grain.z = order.bottom + (layer + 0.5) * step.z + random.uniform(-jitter_z, jitter_z);
+        grain.vx = random.uniform(-0.2, 0.2);
+        grain.vy = random.uniform(-0.2, 0.2);
+        grain.vz = random.uniform(-0.2, 0.2);
         if (order.fits && !order.fits(grain.centre(), grain.radius)) continue;
         session.world().add(grain);
         ++put;
