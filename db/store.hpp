@@ -1,0 +1,92 @@
+/// Store: the verbs. Every verb is one transaction: it happens wholly or, with a db::Error, not at all.
+/// Safe to call from several threads.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "db/record.hpp"
+
+namespace repose::db {
+
+/// Something the store could not do; the text says what, where and what to do.
+class Error : public std::runtime_error {
+ public:
+  Error(int code, const std::string& text) : std::runtime_error(text), code_(code) {}
+  [[nodiscard]] int code() const { return code_; }  ///< SQLite's extended code; 0 where it is not its
+
+ private:
+  int code_;
+};
+
+enum class Access {
+  write,  ///< makes, locks and migrates the file: one process at a time
+  read,   ///< looks only; the file must be there
+};
+
+class Store {
+ public:
+  Store(const std::filesystem::path& file, Access access);
+  ~Store();
+  Store(Store&&) noexcept;
+  Store& operator=(Store&&) noexcept;
+
+  [[nodiscard]] const std::filesystem::path& file() const;
+
+  // Calibrations. `now` is microseconds since 1970 UTC.
+  std::int64_t add_calibration(const std::string& name,
+                               const std::string& request,
+                               const std::string& digest,
+                               std::int64_t now);
+  [[nodiscard]] std::optional<CalibrationRecord> calibration(std::int64_t id) const;
+  /// Newest first, ids below `before` where given; without request and fit.
+  [[nodiscard]] std::vector<CalibrationRecord> calibrations(
+      int limit, std::optional<std::int64_t> before) const;
+  /// The oldest queued or running one with that request, if any.
+  [[nodiscard]] std::optional<CalibrationRecord> unfinished(const std::string& digest) const;
+  [[nodiscard]] std::vector<std::int64_t> in_state(std::string_view state) const;  ///< oldest first
+  /// Finished ones with a fit, the smallest misfit of each name, or of one name.
+  [[nodiscard]] std::vector<CalibrationRecord> best_fits(
+      const std::optional<std::string>& name) const;
+  [[nodiscard]] std::map<std::string, std::int64_t> count_by_state() const;
+
+  /// queued -> running; false where it is not queued.
+  bool start(std::int64_t id, std::int64_t now);
+  /// running -> queued.
+  bool requeue(std::int64_t id);
+  /// Every running one -> queued: after a restart nothing runs.
+  void requeue_all();
+  void set_progress(std::int64_t id, const std::string& progress);
+  /// queued or running -> done, failed or cancelled; false where it was final already.
+  bool finish(std::int64_t id,
+              std::string_view state,
+              const std::optional<std::string>& fit,
+              const std::optional<double>& misfit,
+              const std::optional<std::string>& error,
+              std::int64_t now);
+
+  // Evaluations.
+  [[nodiscard]] std::optional<EvaluationRecord> evaluation(const std::string& key) const;
+  /// Keeps an answer; one that is there already stays. True where it was new.
+  bool add_evaluation(const EvaluationRecord& evaluation);
+  /// Notes which evaluations a calibration used, in order; what is noted already stays.
+  void note_used(std::int64_t calibration,
+                 std::int64_t first_ordinal,
+                 const std::vector<std::string>& keys);
+  [[nodiscard]] std::vector<UsedEvaluation> used(std::int64_t calibration,
+                                                 int limit,
+                                                 std::optional<std::int64_t> after) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace repose::db
