@@ -1,0 +1,62 @@
+#include <optional>
+#include <string>
+
+#include "server/api/handlers.hpp"
+#include "server/api/problem.hpp"
+#include "server/api/query.hpp"
+#include "server/json/text.hpp"
+#include "server/service.hpp"
+
+namespace repose::server::handlers {
+
+namespace {
+
+Reply reply_of(const Answer<std::string>& answer, int status) {
+  if (!answer) return problem_reply(answer.error());
+  return {.status = status, .body = *answer};
+}
+
+}  // namespace
+
+Reply submit_calibration(Service& service, const Request& request) {
+  const auto answer = service.submit(request.body);
+  Reply reply = reply_of(answer, 202);
+  if (!answer) return reply;
+  if (const auto id = whole_member(*answer, "id")) {
+    reply.headers.emplace_back("Location", "/v1/calibrations/" + std::to_string(*id));
+  }
+  return reply;
+}
+
+Reply list_calibrations(Service& service, const Request& request) {
+  Query query(request);
+  const auto limit = static_cast<int>(query.whole("limit", largest_page).value_or(usual_page));
+  const auto before = query.whole("before");
+  if (!query.problems().empty()) return query.refusal();
+  return {.status = 200, .body = service.calibrations(limit, before)};
+}
+
+Reply get_calibration(Service& service, const Request& request) {
+  return reply_of(service.calibration(request.id), 200);
+}
+
+Reply list_evaluations(Service& service, const Request& request) {
+  Query query(request);
+  const auto limit = static_cast<int>(query.whole("limit", largest_page).value_or(usual_page));
+  const auto after = query.whole("after");
+  if (!query.problems().empty()) return query.refusal();
+  return reply_of(service.evaluations(request.id, limit, after), 200);
+}
+
+Reply cancel_calibration(Service& service, const Request& request) {
+  return reply_of(service.cancel(request.id), 202);
+}
+
+Reply list_best_fits(Service& service, const Request& request) {
+  Query query(request);
+  const auto name = query.text("name");
+  if (!query.problems().empty()) return query.refusal();
+  return {.status = 200, .body = service.best_fits(name)};
+}
+
+}  // namespace repose::server::handlers

@@ -1,0 +1,21 @@
+/// The handlers behind the routes: each reads its request, calls the service, and prints.
+#pragma once
+
+#include "server/api/route.hpp"
+
+namespace repose::server::handlers {
+
+Reply submit_calibration(Service& service, const Request& request);
+Reply list_calibrations(Service& service, const Request& request);
+Reply get_calibration(Service& service, const Request& request);
+Reply list_evaluations(Service& service, const Request& request);
+Reply cancel_calibration(Service& service, const Request& request);
+Reply list_best_fits(Service& service, const Request& request);
+
+Reply get_catalogue(Service& service, const Request& request);
+Reply get_openapi(Service& service, const Request& request);
+
+Reply get_health(Service& service, const Request& request);
+Reply get_life(Service& service, const Request& request);
+
+}  // namespace repose::server::handlers

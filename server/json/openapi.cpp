@@ -1,0 +1,142 @@
+#include "server/json/openapi.hpp"
+
+#include <utility>
+
+#include "server/json/catalogue_schema.hpp"
+#include "server/json/schemas.hpp"
+
+namespace repose::server {
+
+namespace {
+
+constexpr std::string_view suffix = ".schema.json";
+constexpr std::string_view components = "#/components/schemas/";
+constexpr std::string_view definitions = "#/definitions/";
+constexpr std::string_view answers = "answers";  // whose definitions are components themselves
+
+Json reference(std::string_view component) {
+  return {{"$ref", std::string(components) + std::string(component)}};
+}
+
+/// Where a reference of one of our schemas leads within the one document.
+std::string moved(std::string_view target, std::string_view component) {
+  if (target.ends_with(suffix)) {
+    target.remove_suffix(suffix.size());
+    return std::string(components) + std::string(target);
+  }
+  if (component == answers && target.starts_with(definitions)) {
+    target.remove_prefix(definitions.size());
+    return std::string(components) + std::string(target);
+  }
+  target.remove_prefix(1);  // '#'
+  return std::string(components) + std::string(component) + std::string(target);
+}
+
+/// A schema as a component: without the identity of a file, its references moved.
+void settle(Json& schema, std::string_view component) {
+  if (schema.is_array()) {
+    for (Json& element : schema) settle(element, component);
+    return;
+  }
+  if (!schema.is_object()) return;
+  for (const char* name : {"$schema", "$id", "$comment"}) schema.erase(name);
+  for (const auto& [name, value] : schema.items()) {
+    if (name == "$ref") {
+      value = moved(value.get<std::string>(), component);
+    } else {
+      settle(value, component);
+    }
+  }
+}
+
+Json component_schemas() {
+  Json result = Json::object();
+  for (const auto& [file, text] : written_schemas()) {
+    const std::string name = file.substr(0, file.size() - suffix.size());
+    Json schema = Json::parse(text);
+    settle(schema, name);
+    if (name == answers) {
+      for (const auto& [part, value] : schema["definitions"].items()) result[part] = value;
+    } else {
+      result[name] = std::move(schema);
+    }
+  }
+  Json effects = effects_schema();
+  settle(effects, "effects");
+  result["effects"] = std::move(effects);
+  Json experiments = experiments_schema();
+  settle(experiments, "experiments");
+  result["experiments"] = std::move(experiments);
+  return result;
+}
+
+Json content(const char* type, Json schema) {
+  return {{"content", {{type, {{"schema", std::move(schema)}}}}}};
+}
+
+Json print_parameters(const Route& route) {
+  const Json whole{{"type", "integer"}, {"minimum", 1}};
+  Json result = Json::array();
+  if (route.pattern.find("{id}") != std::string_view::npos) {
+    result.push_back({{"name", "id"}, {"in", "path"}, {"required", true}, {"schema", whole}});
+  }
+  for (const QueryField& field : route.query) {
+    result.push_back({{"name", field.name},
+                      {"in", "query"},
+                      {"description", field.meaning},
+                      {"schema", field.whole ? whole : Json{{"type", "string"}}}});
+  }
+  return result;
+}
+
+Json print_operation(const Route& route) {
+  Json operation{{"operationId", route.name}, {"summary", route.summary}};
+  if (Json parameters = print_parameters(route); !parameters.empty()) {
+    operation["parameters"] = std::move(parameters);
+  }
+  if (!route.request.empty()) {
+    operation["requestBody"] = content("application/json", reference(route.request));
+    operation["requestBody"]["required"] = true;
+  }
+  Json success =
+      content("application/json",
+              route.response.empty() ? Json{{"type", "object"}} : reference(route.response));
+  success["description"] = "The answer.";
+  if (route.success == 202) success["description"] = "Taken on; the answer says how it stands.";
+  Json problem = content("application/problem+json", reference("problem"));
+  problem["description"] = "What went wrong.";
+  operation["responses"] = {{std::to_string(route.success), std::move(success)},
+                            {"4XX", problem},
+                            {"5XX", std::move(problem)}};
+  return operation;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& letter : result) {
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string print_openapi(std::span<const Route> routes) {
+  Json paths = Json::object();
+  for (const Route& route : routes) {
+    paths[std::string(route.pattern)][lower_case(route.method)] = print_operation(route);
+  }
+  return to_text(
+      Json{{"openapi", "3.1.0"},
+           {"info",
+            {{"title", "repose"},
+             {"description",
+              "Calibrates the parameters of grains in discrete element models. Generated from the "
+              "route table by `repose schema`: do not edit."},
+             {"version", "1"}}},
+           {"paths", std::move(paths)},
+           {"components", {{"schemas", component_schemas()}}}},
+      2);
+}
+
+}  // namespace repose::server
