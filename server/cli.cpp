@@ -178,6 +178,10 @@ void add_serve(CLI::App& app, ServeCommand& options, Work& work) {
   command.add_option("--port", options.port, "Port; 0 is any free one")
       ->capture_default_str()
       ->check(CLI::Range(0, 65535));
+  command.add_option("--name", options.names, "Another name of this host that requests may use")
+      ->type_name("HOST")
+      ->expected(1)
+      ->take_all();
   add_database(command, options.database);
   command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
       ->check(CLI::Range(1, 4096));
@@ -189,7 +193,7 @@ void add_serve(CLI::App& app, ServeCommand& options, Work& work) {
   });
 }
 
-void add_catalogue(CLI::App& app, Form& form, std::filesystem::path& folder, Work& work) {
+void add_catalogue(CLI::App& app, Form& form, SchemaCommand& options, Work& work) {
   CLI::App& catalogue =
       *app.add_subcommand("catalogue", "Print every effect, experiment and material property");
   form = Form::json;
@@ -201,8 +205,9 @@ void add_catalogue(CLI::App& app, Form& form, std::filesystem::path& folder, Wor
       ->excludes(json);
   catalogue.callback([&] { work = [&] { return catalogue_command(form); }; });
   CLI::App& schema = *app.add_subcommand("schema", "Print or write the JSON schemas");
-  schema.add_option("--write", folder, "Write them there")->type_name("DIR");
-  schema.callback([&] { work = [&] { return schema_command(folder); }; });
+  schema.add_option("name", options.name, "Which; without it the names are printed");
+  schema.add_option("--write", options.folder, "Write them there")->type_name("DIR");
+  schema.callback([&] { work = [&] { return schema_command(options); }; });
 }
 
 /// Every command's arguments, alive while the command runs.
@@ -214,7 +219,7 @@ struct Commands {
   ShowCommand show;
   ServeCommand serve;
   Form catalogue_form = Form::json;
-  std::filesystem::path schema_folder;
+  SchemaCommand schema;
 };
 
 int usage_error(const CLI::App& app, const CLI::ParseError& error) {
@@ -240,7 +245,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_serve(app, commands.serve, work);
   add_list(app, commands.list, work);
   add_show(app, commands.show, work);
-  add_catalogue(app, commands.catalogue_form, commands.schema_folder, work);
+  add_catalogue(app, commands.catalogue_form, commands.schema, work);
   CLI::App& answer = *app.add_subcommand("answer", "Answer one trial from standard input");
   answer.group("");  // hidden: for the worker pool
   answer.callback([&] { work = answer_command; });

@@ -66,6 +66,7 @@ int show_command(const ShowCommand& command);
 struct ServeCommand {
   std::string host = "127.0.0.1";
   int port = 8080;
+  std::vector<std::string> names;  ///< of this host, beside `host`, as requests may call it
   std::filesystem::path database;
   unsigned workers = 0;
 };
@@ -73,7 +74,10 @@ int serve_command(const ServeCommand& command);
 
 int catalogue_command(Form form);
 
-/// Prints the names of the schemas, or writes all of them into a folder.
-int schema_command(const std::filesystem::path& folder);
+struct SchemaCommand {
+  std::string name;              ///< of the schema to print; empty: their names
+  std::filesystem::path folder;  ///< where they are written; empty: printed
+};
+int schema_command(const SchemaCommand& command);
 
 }  // namespace repose::server

@@ -27,13 +27,13 @@ std::string parameter_label(const engine::ParameterKey& key) {
   } else if (!property.empty() && property != "coefficient") {
     text += " " + words(property);
   }
-  const char* separator = ", ";
+  const char* separator = " (";
   for (const engine::MaterialId id : key.between) {
     text += separator;
     text += engine::material_names[static_cast<std::size_t>(id)];
     separator = "-";
   }
-  return text;
+  return key.between.empty() ? text : text + ")";
 }
 
 std::string measurement_label(const calibrator::Measurement& measurement) {

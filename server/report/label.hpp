@@ -7,7 +7,7 @@
 
 namespace repose::server {
 
-/// "sliding friction, grain-wall"
+/// "sliding friction (grain-wall)"
 std::string parameter_label(const engine::ParameterKey& key);
 
 /// "drum: dynamic angle"

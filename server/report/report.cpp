@@ -29,6 +29,12 @@ std::string element(std::string_view name, std::string_view words, std::string_v
   return "<" + tag + of + ">" + escaped(words) + "</" + tag + ">";
 }
 
+/// A cell of a table; its column's head stands with it where the page is too narrow for columns.
+std::string cell(std::string_view head, std::string_view words, std::string_view style = {}) {
+  return "<td data-head=\"" + escaped(head) + "\" class=\"" + std::string(style) + "\">" +
+         "<span>" + escaped(words) + "</span></td>";
+}
+
 std::string described(std::string_view term, std::string_view what) {
   return element("dt", term) + element("dd", what) + "\n";
 }
@@ -67,7 +73,7 @@ std::string fidelity_text(const Calibration& calibration) {
   };
   const auto& budget = calibration.budget;
   if (budget.fidelity == budget.confirm_fidelity) return name(budget.fidelity);
-  return name(budget.fidelity) + ", confirmed at " + name(budget.confirm_fidelity);
+  return name(budget.fidelity) + ", then " + name(budget.confirm_fidelity);
 }
 
 std::string verdict_section(const Calibration& calibration, const Fit& fit) {
@@ -102,25 +108,26 @@ std::string measurement_row(const Measurement& measurement, const Prediction& pr
   std::string text = "<tr><td>" + escaped(measurement_label(measurement));
   if (!note.empty()) text += element("small", note);
   if (!measurement.source.empty()) text += element("small", measurement.source);
-  text += "</td><td>" + escaped(with_error(measurement.value, measurement.standard_error, unit));
+  text += "</td><td data-head=\"measured\"><span>" +
+          escaped(with_error(measurement.value, measurement.standard_error, unit));
   if (measurement.allowance > 0.0) {
     text += "<small class=\"warning\">allowance " +
             escaped(number_text(measurement.allowance / unit.factor) + unit_suffix(unit)) +
             "</small>";
   }
-  text +=
-      "</td>" + element("td", with_error(prediction.predicted, prediction.standard_error, unit));
+  text += "</span></td>" +
+          cell("predicted", with_error(prediction.predicted, prediction.standard_error, unit));
   const double difference = (prediction.predicted - measurement.value) / unit.factor;
   const double error = measurement.standard_error / unit.factor;
   const std::string sign = difference > 0.0 ? "+" : "";
-  text += element("td",
-                  std::isnan(difference)
-                      ? "-"
-                      : sign + fixed_text(difference, decimals_for(difference, error)));
+  text +=
+      cell("difference",
+           std::isnan(difference) ? "-"
+                                  : sign + fixed_text(difference, decimals_for(difference, error)));
   const std::string z = std::isfinite(prediction.z)
                             ? (prediction.z > 0.0 ? "+" : "") + fixed_text(prediction.z, 2)
                             : "-";
-  return text + element("td", z, grade(prediction.z)) + "</tr>\n";
+  return text + cell("z", z, grade(prediction.z)) + "</tr>\n";
 }
 
 std::string measurements_section(const Calibration& calibration, const Fit& fit) {
@@ -168,11 +175,12 @@ std::string parameter_row(const Calibration& calibration, std::size_t index, con
     interval += fitted.lower_at_bound ? " (lower bound)" : " (upper bound)";
   }
   return "<tr>" + element("td", parameter_label(free.key)) +
-         element("td", shown(fitted.value) + unit_suffix(free.unit)) + element("td", interval) +
-         element("td", fixed_text(100.0 * std::max(0.0, fitted.learnt), 0) + " %") +
-         element("td",
-                 fitted.determined ? "determined" : "not determined",
-                 fitted.determined ? "" : "open") +
+         cell("best", shown(fitted.value) + unit_suffix(free.unit)) +
+         cell("95 % interval", interval) +
+         cell("learnt", fixed_text(100.0 * std::max(0.0, fitted.learnt), 0) + " %") +
+         cell("",
+              fitted.determined ? "determined" : "not determined",
+              fitted.determined ? "" : "open") +
          "</tr>\n";
 }
 
@@ -227,8 +235,8 @@ std::string set_section(const Calibration& calibration, const Fit& fit) {
       role = number_text(tie->factor) + " x " + parameter_label(tie->to);
     }
     text += "<tr>" + element("td", parameter_label(key)) +
-            element("td", number_text(value / unit.factor) + unit_suffix(unit)) +
-            element("td", role, role == "free" ? "" : "open") + "</tr>\n";
+            cell("value", number_text(value / unit.factor) + unit_suffix(unit)) +
+            cell("", role, role == "free" ? "" : "open") + "</tr>\n";
   }
   return text + "</table></div>\n</section>\n";
 }

@@ -117,6 +117,22 @@ dl.plain { display: grid; grid-template-columns: minmax(110px, max-content) 1fr;
   font-size: 15px; }
 .plain dt { color: var(--quiet); }
 .plain dd { margin: 0; overflow-wrap: anywhere; }
+@media (max-width: 600px) {
+  main { padding: 18px 10px 40px; }
+  tr:first-child { display: none; }
+  tr { display: block; padding: 8px 0; border-bottom: 1px solid var(--line); }
+  tr:last-child { border-bottom: 0; }
+  td { display: flex; justify-content: space-between; gap: 16px; padding: 2px 0; border: 0;
+    white-space: normal; }
+  td::before { content: attr(data-head); color: var(--quiet); font-weight: 400; font-style: normal;
+    white-space: nowrap; }
+  td > span { text-align: right; }
+  td:first-child { display: block; font-weight: 600; }
+  td:first-child small { font-weight: 400; }
+  .chart .label { font-size: 14.5px; }
+  .chart .label.small { font-size: 13px; }
+  .chart .tick { font-size: 13px; }
+}
 @media print {
   :root { color-scheme: light;
     --page: #fff; --sheet: #fff; --ink: #000; --quiet: #444; --line: #ccc;

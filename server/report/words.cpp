@@ -31,6 +31,12 @@ std::string enumerate(const std::vector<std::string>& items) {
   return text;
 }
 
+std::string joined(const std::vector<std::string>& items, const char* separator) {
+  std::string text;
+  for (const std::string& item : items) text += (text.empty() ? "" : separator) + item;
+  return text;
+}
+
 std::vector<const Prediction*> predictions_of(const Calibration& calibration,
                                               const Fit& fit,
                                               Role role) {
@@ -90,12 +96,10 @@ std::string open_direction(const Calibration& calibration, const Direction& dire
     (size * sign > 0.0 ? same : opposite).push_back(parameter_label(calibration.free.at(i).key));
   }
   if (same.size() + opposite.size() < 2) return {};
-  if (opposite.empty()) {
-    return "The data cannot tell " + enumerate(same) +
-           " apart: less of one makes up for more of another.";
-  }
-  return "The data cannot tell apart more of " + enumerate(same) + " together with more of " +
-         enumerate(opposite) + ".";
+  const std::string how = opposite.empty()
+                              ? "Raising " + enumerate(same) + " together"
+                              : "More " + enumerate(same) + " with less " + enumerate(opposite);
+  return how + ", or the reverse, changes the measurements too little to be told.";
 }
 
 }  // namespace
@@ -150,13 +154,13 @@ std::vector<std::string> learnt_sentences(const Calibration& calibration, const 
     const std::string label = parameter_label(fit.parameters[i].key);
     if (fit.parameters[i].determined) determined.push_back(label);
     if (!fit.parameters[i].determined) {
-      open.push_back(label + " (anything from " + interval_text(calibration, i, fit) + ")");
+      open.push_back(label + ", anything from " + interval_text(calibration, i, fit));
     }
   }
   if (!determined.empty())
     sentences.push_back("Determined by the data: " + enumerate(determined) + ".");
   if (!open.empty()) {
-    sentences.push_back("Not determined by the data: " + enumerate(open) +
+    sentences.push_back("Not determined by the data: " + joined(open, "; ") +
                         (open.size() == 1 ? ". Its best value is one of many that do as well."
                                           : ". Their best values are one choice of many that do as "
                                             "well."));
