@@ -329,6 +329,8 @@ Fit Search::fail(std::string remark) {
 }
 
 Fit Search::finish(StopReason reason) {
+  // Whatever was about to be concluded, runs that were cut short are no evidence of it.
+  if (stop_.stop_requested() && reason != StopReason::hit) reason = StopReason::cancelled;
   if (!surrogate_) {
     Fit fit = fail("The search was cancelled before anything was learnt.");
     fit.stop = reason;

@@ -116,7 +116,10 @@ double probability_of_better(const Outlook& outlook, const UnitPoint& recommende
     const Eigen::ArrayXd means = (joint.mean.array() - target.value) / std::sqrt(target.variance);
     misfits += ((root.triangularView<Eigen::Lower>() * normals).array().colwise() + means).square();
   }
-  const double epsilon = std::max(0.5, 0.05 * static_cast<double>(outlook.targets.size()));
+  const double epsilon =
+      std::max({0.5,
+                0.05 * static_cast<double>(outlook.targets.size()),
+                0.2 * expected_misfit(outlook.surrogate, outlook.targets, recommended)});
   int better = 0;
   for (Index s = 0; s < draws; ++s) {
     if (misfits.col(s).minCoeff() < misfits(0, s) - epsilon) ++better;

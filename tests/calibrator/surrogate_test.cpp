@@ -133,12 +133,11 @@ TEST_CASE("a believed run leaves the mean and narrows the belief", "[calibrator]
 }
 
 TEST_CASE("replicates narrow the belief", "[calibrator]") {
-  auto once = sampled(10, 1, 0.3, [](const UnitPoint& u) { return u[0]; });
-  auto often = once;
-  for (Sample& sample : often) sample.variance /= 16.0;
+  const auto f = [](const UnitPoint& u) { return u[0]; };
   const Hyperparameters h = prior_mode(1);
-  CHECK(GaussianProcess(often, h).at(UnitPoint{0.5}).variance <
-        GaussianProcess(once, h).at(UnitPoint{0.5}).variance);
+  const GaussianProcess once(sampled(10, 1, 0.3, f), h);
+  const GaussianProcess often(sampled(10, 1, 0.3 / 4.0, f), h);  // means of sixteen
+  CHECK(often.at(UnitPoint{0.5}).variance < once.at(UnitPoint{0.5}).variance);
 }
 
 TEST_CASE("an error bar that leaves one out proves too small is widened", "[calibrator]") {
