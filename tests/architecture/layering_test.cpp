@@ -30,6 +30,9 @@ const std::set<std::string_view> pure_headers{
     "utility",         "valarray",    "variant",    "vector",        "version",
 };
 
+// Sentences with numbers in them: snprintf, in the absence of <format>.
+const std::set<std::string_view> text_headers{"cstdio"};
+
 // A store waits for its turn and has a file.
 const std::set<std::string_view> store_headers{
     "atomic",
@@ -49,7 +52,7 @@ struct Layer {
 
 const std::vector<Layer> layers{
     {"engine/", {"engine/"}, {&pure_headers}},
-    {"calibrator/", {"calibrator/", "engine/"}, {&pure_headers}},
+    {"calibrator/", {"calibrator/", "engine/"}, {&pure_headers, &text_headers}},
     {"db/", {"db/"}, {&pure_headers, &store_headers}},
     {"server/", {"server/", "calibrator/", "db/", "engine/"}, {}},
     {"tests/", {"tests/", "server/", "calibrator/", "db/", "engine/"}, {}},
