@@ -1,0 +1,61 @@
+#include "db/migrate.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "db/store.hpp"
+
+/// The files of db/migrations in the order of their names: name, text.
+extern const std::span<const std::pair<std::string_view, std::string_view>> embedded_migrations;
+
+namespace repose::db {
+
+namespace {
+
+std::int64_t pragma(Connection& connection, const std::string& name) {
+  Statement statement = connection.prepare("PRAGMA " + name);
+  return statement.step() ? statement.integer(0) : 0;
+}
+
+bool empty(Connection& connection) {
+  Statement statement = connection.prepare("SELECT count(*) FROM sqlite_schema");
+  statement.step();
+  return statement.integer(0) == 0;
+}
+
+}  // namespace
+
+std::int64_t newest_schema() { return static_cast<std::int64_t>(embedded_migrations.size()); }
+
+void check_schema(Connection& connection) {
+  if (empty(connection)) return;
+  if (pragma(connection, "application_id") != application_id) {
+    throw Error(0,
+                connection.file().string() +
+                    " is a database of another program; choose another file with --db");
+  }
+  const std::int64_t version = pragma(connection, "user_version");
+  if (version > newest_schema()) {
+    throw Error(0,
+                "database " + connection.file().string() + " has schema " +
+                    std::to_string(version) + ", this program knows up to " +
+                    std::to_string(newest_schema()) +
+                    ": a newer repose has made it; use that one, or another file with --db");
+  }
+}
+
+void migrate(Connection& connection) {
+  check_schema(connection);
+  for (std::int64_t version = pragma(connection, "user_version"); version < newest_schema();
+       ++version) {
+    Transaction transaction(connection);
+    connection.run(std::string(embedded_migrations[static_cast<std::size_t>(version)].second));
+    connection.run("PRAGMA application_id = " + std::to_string(application_id));
+    connection.run("PRAGMA user_version = " + std::to_string(version + 1));
+    transaction.commit();
+  }
+}
+
+}  // namespace repose::db

@@ -1,0 +1,20 @@
+/// migrate(): brings a database to this program's schema, one numbered step at a time.
+#pragma once
+
+#include "db/sqlite.hpp"
+
+namespace repose::db {
+
+/// Marks a file as ours ("rpos").
+inline constexpr std::int64_t application_id = 0x72706f73;
+
+/// The number of the newest schema this program knows.
+std::int64_t newest_schema();
+
+/// Refuses a file that is not ours or that a newer program has made.
+void check_schema(Connection& connection);
+
+/// Applies the missing steps in order, each in one transaction.
+void migrate(Connection& connection);
+
+}  // namespace repose::db

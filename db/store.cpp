@@ -1,0 +1,289 @@
+#include "db/store.hpp"
+
+#include <mutex>
+
+#include "db/lock.hpp"
+#include "db/migrate.hpp"
+#include "db/sqlite.hpp"
+
+namespace repose::db {
+
+namespace {
+
+constexpr std::string_view calibration_columns =
+    "id, name, state, created_at, started_at, finished_at, request_digest, progress, misfit, error";
+
+CalibrationRecord without_documents(const Statement& row) {
+  CalibrationRecord record;
+  record.id = row.integer(0);
+  record.name = row.text(1);
+  record.state = row.text(2);
+  record.created_at = row.integer(3);
+  record.started_at = row.integer_or_null(4);
+  record.finished_at = row.integer_or_null(5);
+  record.request_digest = row.text(6);
+  record.progress = row.text_or_null(7);
+  record.misfit = row.real_or_null(8);
+  record.error = row.text_or_null(9);
+  return record;
+}
+
+CalibrationRecord with_documents(const Statement& row) {
+  CalibrationRecord record = without_documents(row);
+  record.request = row.text(10);
+  record.fit = row.text_or_null(11);
+  return record;
+}
+
+std::string select_calibration(bool documents, std::string_view rest) {
+  return "SELECT " + std::string(calibration_columns) + (documents ? ", request, fit" : "") +
+         " FROM calibration " + std::string(rest);
+}
+
+EvaluationRecord evaluation_of(const Statement& row, int first) {
+  return {row.text(first),
+          row.text(first + 1),
+          row.text(first + 2),
+          row.real(first + 3),
+          row.text(first + 4),
+          row.integer(first + 5)};
+}
+
+void set_up(Connection& connection, Access access) {
+  connection.run("PRAGMA foreign_keys = ON");
+  connection.run("PRAGMA trusted_schema = OFF");
+  connection.run("PRAGMA cell_size_check = ON");
+  if (access == Access::read) {
+    connection.run("PRAGMA query_only = ON");
+    check_schema(connection);
+    return;
+  }
+  check_schema(connection);  // before anything is written to a file that may not be ours
+  connection.run("PRAGMA journal_mode = WAL");
+  connection.run("PRAGMA synchronous = FULL");
+  migrate(connection);
+}
+
+}  // namespace
+
+/// One connection writes, reads and checkpoints under one mutex: two connections of one process
+/// that write or checkpoint at the same moment can corrupt a WAL file in this version of SQLite,
+/// and nothing here is so frequent that it would wait.
+struct Store::State {
+  State(const std::filesystem::path& file, Access access)
+      : lock(access == Access::write ? std::make_unique<FileLock>(file) : nullptr),
+        connection(file,
+                   access == Access::write ? Connection::Mode::write : Connection::Mode::read) {
+    set_up(connection, access);
+  }
+
+  std::unique_ptr<FileLock> lock;
+  Connection connection;
+  std::mutex mutex;
+};
+
+Store::Store(const std::filesystem::path& file, Access access)
+    : state_(std::make_unique<State>(file, access)) {}
+Store::~Store() = default;
+Store::Store(Store&&) noexcept = default;
+Store& Store::operator=(Store&&) noexcept = default;
+
+const std::filesystem::path& Store::file() const { return state_->connection.file(); }
+
+std::int64_t Store::add_calibration(const std::string& name,
+                                    const std::string& request,
+                                    const std::string& digest,
+                                    std::int64_t now) {
+  const std::scoped_lock hold(state_->mutex);
+  state_->connection
+      .prepare(
+          "INSERT INTO calibration (name, state, created_at, request, request_digest) "
+          "VALUES (?, 'queued', ?, ?, ?)")
+      .bind(std::string_view(name))
+      .bind(now)
+      .bind(std::string_view(request))
+      .bind(std::string_view(digest))
+      .run();
+  return state_->connection.last_id();
+}
+
+std::optional<CalibrationRecord> Store::calibration(std::int64_t id) const {
+  const std::scoped_lock hold(state_->mutex);
+  Statement row = state_->connection.prepare(select_calibration(true, "WHERE id = ?"));
+  row.bind(id);
+  if (!row.step()) return std::nullopt;
+  return with_documents(row);
+}
+
+std::vector<CalibrationRecord> Store::calibrations(int limit,
+                                                   std::optional<std::int64_t> before) const {
+  const std::scoped_lock hold(state_->mutex);
+  Statement row = state_->connection.prepare(
+      select_calibration(false, "WHERE ?1 IS NULL OR id < ?1 ORDER BY id DESC LIMIT ?2"));
+  row.bind(before).bind(static_cast<std::int64_t>(limit));
+  std::vector<CalibrationRecord> records;
+  while (row.step()) records.push_back(without_documents(row));
+  return records;
+}
+
+std::optional<CalibrationRecord> Store::unfinished(const std::string& digest) const {
+  const std::scoped_lock hold(state_->mutex);
+  Statement row = state_->connection.prepare(
+      select_calibration(true,
+                         "WHERE request_digest = ? AND state IN ('queued', 'running') "
+                         "ORDER BY id LIMIT 1"));
+  row.bind(std::string_view(digest));
+  if (!row.step()) return std::nullopt;
+  return with_documents(row);
+}
+
+std::vector<std::int64_t> Store::in_state(std::string_view state) const {
+  const std::scoped_lock hold(state_->mutex);
+  Statement row =
+      state_->connection.prepare("SELECT id FROM calibration WHERE state = ? ORDER BY id");
+  row.bind(state);
+  std::vector<std::int64_t> ids;
+  while (row.step()) ids.push_back(row.integer(0));
+  return ids;
+}
+
+std::vector<CalibrationRecord> Store::best_fits(const std::optional<std::string>& name) const {
+  const std::scoped_lock hold(state_->mutex);
+  // Of equal misfits the newest stands.
+  Statement row = state_->connection.prepare(
+      select_calibration(true,
+                         "WHERE id IN (SELECT id FROM (SELECT id, row_number() OVER "
+                         "(PARTITION BY name ORDER BY misfit, id DESC) AS place FROM calibration "
+                         "WHERE fit IS NOT NULL AND misfit IS NOT NULL AND state = 'done' "
+                         "AND (?1 IS NULL OR name = ?1)) WHERE place = 1) ORDER BY name"));
+  row.bind(name ? std::optional<std::string_view>(*name) : std::nullopt);
+  std::vector<CalibrationRecord> records;
+  while (row.step()) records.push_back(with_documents(row));
+  return records;
+}
+
+std::map<std::string, std::int64_t> Store::count_by_state() const {
+  const std::scoped_lock hold(state_->mutex);
+  Statement row =
+      state_->connection.prepare("SELECT state, count(*) FROM calibration GROUP BY state");
+  std::map<std::string, std::int64_t> counts;
+  while (row.step()) counts[row.text(0)] = row.integer(1);
+  return counts;
+}
+
+bool Store::start(std::int64_t id, std::int64_t now) {
+  const std::scoped_lock hold(state_->mutex);
+  state_->connection
+      .prepare(
+          "UPDATE calibration SET state = 'running', started_at = coalesce(started_at, ?) "
+          "WHERE id = ? AND state = 'queued'")
+      .bind(now)
+      .bind(id)
+      .run();
+  return state_->connection.changes() == 1;
+}
+
+bool Store::requeue(std::int64_t id) {
+  const std::scoped_lock hold(state_->mutex);
+  state_->connection
+      .prepare("UPDATE calibration SET state = 'queued' WHERE id = ? AND state = 'running'")
+      .bind(id)
+      .run();
+  return state_->connection.changes() == 1;
+}
+
+void Store::requeue_all() {
+  const std::scoped_lock hold(state_->mutex);
+  state_->connection.run("UPDATE calibration SET state = 'queued' WHERE state = 'running'");
+}
+
+void Store::set_progress(std::int64_t id, const std::string& progress) {
+  const std::scoped_lock hold(state_->mutex);
+  state_->connection
+      .prepare(
+          "UPDATE calibration SET progress = ? WHERE id = ? AND state IN ('queued', 'running')")
+      .bind(std::string_view(progress))
+      .bind(id)
+      .run();
+}
+
+bool Store::finish(std::int64_t id,
+                   std::string_view state,
+                   const std::optional<std::string>& fit,
+                   const std::optional<double>& misfit,
+                   const std::optional<std::string>& error,
+                   std::int64_t now) {
+  const std::scoped_lock hold(state_->mutex);
+  const auto view = [](const std::optional<std::string>& text) {
+    return text ? std::optional<std::string_view>(*text) : std::nullopt;
+  };
+  state_->connection
+      .prepare(
+          "UPDATE calibration SET state = ?, fit = ?, misfit = ?, error = ?, finished_at = ? "
+          "WHERE id = ? AND state IN ('queued', 'running')")
+      .bind(state)
+      .bind(view(fit))
+      .bind(misfit)
+      .bind(view(error))
+      .bind(now)
+      .bind(id)
+      .run();
+  return state_->connection.changes() == 1;
+}
+
+std::optional<EvaluationRecord> Store::evaluation(const std::string& key) const {
+  const std::scoped_lock hold(state_->mutex);
+  Statement row = state_->connection.prepare(
+      "SELECT key, question, answer, seconds, engine_version, created_at FROM evaluation "
+      "WHERE key = ?");
+  row.bind(std::string_view(key));
+  if (!row.step()) return std::nullopt;
+  return evaluation_of(row, 0);
+}
+
+bool Store::add_evaluation(const EvaluationRecord& evaluation) {
+  const std::scoped_lock hold(state_->mutex);
+  state_->connection
+      .prepare(
+          "INSERT INTO evaluation (key, question, answer, seconds, engine_version, created_at) "
+          "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING")
+      .bind(std::string_view(evaluation.key))
+      .bind(std::string_view(evaluation.question))
+      .bind(std::string_view(evaluation.answer))
+      .bind(evaluation.seconds)
+      .bind(std::string_view(evaluation.engine_version))
+      .bind(evaluation.created_at)
+      .run();
+  return state_->connection.changes() == 1;
+}
+
+void Store::note_used(std::int64_t calibration,
+                      std::int64_t first_ordinal,
+                      const std::vector<std::string>& keys) {
+  const std::scoped_lock hold(state_->mutex);
+  Transaction transaction(state_->connection);
+  Statement insert = state_->connection.prepare(
+      "INSERT INTO calibration_evaluation (calibration_id, ordinal, key) VALUES (?, ?, ?) "
+      "ON CONFLICT DO NOTHING");
+  std::int64_t ordinal = first_ordinal;
+  for (const std::string& key : keys) {
+    insert.bind(calibration).bind(ordinal++).bind(std::string_view(key)).run();
+  }
+  transaction.commit();
+}
+
+std::vector<UsedEvaluation> Store::used(std::int64_t calibration,
+                                        int limit,
+                                        std::optional<std::int64_t> after) const {
+  const std::scoped_lock hold(state_->mutex);
+  Statement row = state_->connection.prepare(
+      "SELECT u.ordinal, e.key, e.question, e.answer, e.seconds, e.engine_version, e.created_at "
+      "FROM calibration_evaluation u JOIN evaluation e ON e.key = u.key "
+      "WHERE u.calibration_id = ?1 AND (?2 IS NULL OR u.ordinal > ?2) ORDER BY u.ordinal LIMIT ?3");
+  row.bind(calibration).bind(after).bind(static_cast<std::int64_t>(limit));
+  std::vector<UsedEvaluation> result;
+  while (row.step()) result.push_back({row.integer(0), evaluation_of(row, 1)});
+  return result;
+}
+
+}  // namespace repose::db

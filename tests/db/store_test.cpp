@@ -1,0 +1,225 @@
+#include "db/store.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include <catch2/catch.hpp>
+
+#include "db/migrate.hpp"
+#include "db/sqlite.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace repose::db;
+using repose::tests::TemporaryFolder;
+
+namespace {
+
+EvaluationRecord evaluation(const std::string& key) {
+  return {key, "question of " + key, "answer of " + key, 1.5, "v1", 42};
+}
+
+}  // namespace
+
+TEST_CASE("a calibration goes through its states and keeps its documents", "[db]") {
+  const TemporaryFolder folder;
+  Store store(folder / "a.db", Access::write);
+  const auto id = store.add_calibration("soybean", "{\"study\":1}", "digest", 10);
+  CHECK(store.calibration(id)->state == "queued");
+  CHECK(store.start(id, 20));
+  CHECK_FALSE(store.start(id, 21));
+  store.set_progress(id, "{\"p\":1}");
+  CHECK(store.unfinished("digest")->id == id);
+  CHECK(store.finish(id, "done", "{\"fit\":1}", 2.5, std::nullopt, 30));
+  const auto record = store.calibration(id);
+  CHECK(record->state == "done");
+  CHECK(record->request == "{\"study\":1}");
+  CHECK(record->progress == "{\"p\":1}");
+  CHECK(record->fit == "{\"fit\":1}");
+  CHECK(record->misfit == 2.5);
+  CHECK(record->created_at == 10);
+  CHECK(record->started_at == 20);
+  CHECK(record->finished_at == 30);
+  CHECK_FALSE(record->error.has_value());
+  CHECK_FALSE(store.unfinished("digest").has_value());
+  CHECK_FALSE(store.finish(id, "failed", std::nullopt, std::nullopt, "late", 40));
+  CHECK_FALSE(store.calibration(id + 1).has_value());
+}
+
+TEST_CASE("what is finished cannot be changed, even by hand", "[db]") {
+  const TemporaryFolder folder;
+  {
+    Store store(folder / "a.db", Access::write);
+    store.finish(store.add_calibration("n", "{}", "d", 1), "done", "{}", 1.0, std::nullopt, 2);
+    store.add_evaluation(evaluation("k"));
+  }
+  Connection connection(folder / "a.db", Connection::Mode::write);
+  CHECK_THROWS_AS(connection.run("UPDATE calibration SET fit = 'x'"), Error);
+  CHECK_THROWS_AS(connection.run("UPDATE evaluation SET answer = 'x'"), Error);
+  CHECK_THROWS_AS(connection.run("UPDATE calibration SET state = 'odd'"), Error);
+}
+
+TEST_CASE("an interrupted calibration waits again after a restart", "[db]") {
+  const TemporaryFolder folder;
+  std::int64_t id = 0;
+  {
+    Store store(folder / "a.db", Access::write);
+    id = store.add_calibration("n", "{}", "d", 1);
+    store.start(id, 2);
+  }
+  Store store(folder / "a.db", Access::write);
+  CHECK(store.calibration(id)->state == "running");
+  store.requeue_all();
+  CHECK(store.in_state("queued") == std::vector{id});
+  CHECK(store.count_by_state() == std::map<std::string, std::int64_t>{{"queued", 1}});
+}
+
+TEST_CASE("lists are newest first and page by id", "[db]") {
+  const TemporaryFolder folder;
+  Store store(folder / "a.db", Access::write);
+  for (int i = 0; i < 5; ++i) store.add_calibration("n" + std::to_string(i), "{}", "d", i);
+  const auto first = store.calibrations(2, std::nullopt);
+  REQUIRE(first.size() == 2);
+  CHECK(first[0].name == "n4");
+  store.add_calibration("late", "{}", "d", 9);  // must not shift the next page
+  const auto second = store.calibrations(2, first[1].id);
+  CHECK(second[0].name == "n2");
+  CHECK(store.calibrations(10, 1).empty());
+}
+
+TEST_CASE("the best fit of a name is its smallest misfit", "[db]") {
+  const TemporaryFolder folder;
+  Store store(folder / "a.db", Access::write);
+  const auto finish = [&store](const std::string& name, const std::string& state, double misfit) {
+    store.finish(store.add_calibration(name, "{}", "d", 1), state, "{}", misfit, std::nullopt, 2);
+  };
+  finish("a", "done", 3.0);
+  finish("a", "done", 1.0);
+  finish("a", "failed", 0.1);
+  finish("b", "done", 2.0);
+  const auto all = store.best_fits(std::nullopt);
+  REQUIRE(all.size() == 2);
+  CHECK(all[0].misfit == 1.0);
+  CHECK(all[1].name == "b");
+  CHECK(store.best_fits("b").size() == 1);
+  CHECK(store.best_fits("c").empty());
+}
+
+TEST_CASE("the first answer to a question stays", "[db]") {
+  const TemporaryFolder folder;
+  Store store(folder / "a.db", Access::write);
+  CHECK(store.add_evaluation(evaluation("k")));
+  EvaluationRecord other = evaluation("k");
+  other.answer = "another";
+  CHECK_FALSE(store.add_evaluation(other));
+  CHECK(store.evaluation("k")->answer == "answer of k");
+  CHECK(store.evaluation("k")->seconds == 1.5);
+  CHECK_FALSE(store.evaluation("l").has_value());
+}
+
+TEST_CASE("a calibration's evaluations come in the order of work", "[db]") {
+  const TemporaryFolder folder;
+  Store store(folder / "a.db", Access::write);
+  const auto id = store.add_calibration("n", "{}", "d", 1);
+  for (const char* key : {"a", "b", "c"}) store.add_evaluation(evaluation(key));
+  store.note_used(id, 0, {"c", "a"});
+  store.note_used(id, 0, {"c", "a", "b"});  // replayed
+  const auto used = store.used(id, 10, std::nullopt);
+  REQUIRE(used.size() == 3);
+  CHECK(used[0].evaluation.key == "c");
+  CHECK(used[2].evaluation.key == "b");
+  CHECK(store.used(id, 10, 1).size() == 1);
+}
+
+TEST_CASE("a use of an evaluation that is not there is refused whole", "[db]") {
+  const TemporaryFolder folder;
+  Store store(folder / "a.db", Access::write);
+  const auto id = store.add_calibration("n", "{}", "d", 1);
+  store.add_evaluation(evaluation("a"));
+  CHECK_THROWS_AS(store.note_used(id, 0, {"a", "missing"}), Error);
+  CHECK(store.used(id, 10, std::nullopt).empty());
+}
+
+TEST_CASE("one process writes at a time, others may read", "[db]") {
+  const TemporaryFolder folder;
+  Store writer(folder / "a.db", Access::write);
+  const auto id = writer.add_calibration("n", "{}", "d", 1);
+  CHECK_THROWS_WITH(Store(folder / "a.db", Access::write), Catch::Contains("in use by process"));
+  const Store reader(folder / "a.db", Access::read);
+  CHECK(reader.calibration(id)->name == "n");
+}
+
+TEST_CASE("a reader of nothing, of rubbish and of a newer file is told so", "[db]") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_WITH(Store(folder / "none.db", Access::read), Catch::Contains("cannot open"));
+  CHECK_THROWS_WITH(Store(folder / "no" / "such" / "folder.db", Access::write),
+                    Catch::Contains("folder exists"));
+  std::ofstream(folder / "rubbish.db") << std::string(5000, 'x');
+  CHECK_THROWS_WITH(Store(folder / "rubbish.db", Access::write), Catch::Contains("not a database"));
+  {
+    Connection other(folder / "other.db", Connection::Mode::write);
+    other.run("CREATE TABLE t (x)");
+  }
+  CHECK_THROWS_WITH(Store(folder / "other.db", Access::write), Catch::Contains("another program"));
+  { Store store(folder / "newer.db", Access::write); }
+  {
+    Connection newer(folder / "newer.db", Connection::Mode::write);
+    newer.run("PRAGMA user_version = " + std::to_string(newest_schema() + 1));
+  }
+  CHECK_THROWS_WITH(Store(folder / "newer.db", Access::write), Catch::Contains("newer repose"));
+}
+
+TEST_CASE("a full disk fails the verb, not the file", "[db]") {
+  const TemporaryFolder folder;
+  const auto file = folder / "a.db";
+  Store store(file, Access::write);
+  store.add_evaluation(evaluation("before"));
+  // The cap is the connection's own; a second connection cannot set it, so fill a capped one.
+  {
+    Connection capped(folder / "capped.db", Connection::Mode::write);
+    migrate(capped);
+    capped.run("PRAGMA max_page_count = 40");
+    const std::string big(200000, 'x');
+    auto insert = capped.prepare("INSERT INTO evaluation VALUES ('k', 'q', ?, 1.0, 'v', 1)");
+    insert.bind(std::string_view(big));
+    CHECK_THROWS_WITH(insert.step(), Catch::Contains("disk is full"));
+    CHECK(capped.prepare("SELECT count(*) FROM evaluation").step());
+    auto check = capped.prepare("PRAGMA integrity_check");
+    check.step();
+    CHECK(check.text(0) == "ok");
+  }
+  CHECK(store.evaluation("before").has_value());
+}
+
+TEST_CASE("many threads write without loss", "[db]") {
+  const TemporaryFolder folder;
+  Store store(folder / "a.db", Access::write);
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 4; ++t) {
+      threads.emplace_back([&store, t] {
+        for (int i = 0; i < 25; ++i) {
+          store.add_evaluation(evaluation(std::to_string(t) + "-" + std::to_string(i)));
+        }
+      });
+    }
+  }
+  for (int t = 0; t < 4; ++t) {
+    for (int i = 0; i < 25; ++i) {
+      CHECK(store.evaluation(std::to_string(t) + "-" + std::to_string(i)).has_value());
+    }
+  }
+}
+
+TEST_CASE("a new file is in WAL mode, with foreign keys that are sound", "[db]") {
+  const TemporaryFolder folder;
+  { Store store(folder / "a.db", Access::write); }
+  Connection connection(folder / "a.db", Connection::Mode::write);
+  auto mode = connection.prepare("PRAGMA journal_mode");
+  mode.step();
+  CHECK(mode.text(0) == "wal");
+  auto version = connection.prepare("PRAGMA user_version");
+  version.step();
+  CHECK(version.integer(0) == newest_schema());
+  CHECK_FALSE(connection.prepare("PRAGMA foreign_key_check").step());
+}
