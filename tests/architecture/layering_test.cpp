@@ -36,11 +36,13 @@ const std::set<std::string_view> text_headers{"cstdio"};
 // A store waits for its turn and has a file.
 const std::set<std::string_view> store_headers{
     "atomic",
+    "cerrno",
     "chrono",
     "condition_variable",
     "filesystem",
     "mutex",
     "shared_mutex",
+    "system_error",
 };
 
 /// A layer: the folders of ours it may include, and the headers of the standard library.
@@ -74,6 +76,10 @@ const std::vector<Library> libraries{
     {"png", {"server/report/image.cpp"}},
     {"CLI/", {"server/cli"}},
     {"catch2/", {"tests/"}},
+    // The operating system's own: a file's lock, child processes, terminals.
+    {"fcntl.h", {"db/lock.cpp", "server/", "tests/"}},
+    {"sys/", {"db/lock.cpp", "server/", "tests/"}},
+    {"unistd.h", {"db/lock.cpp", "server/", "tests/"}},
 };
 
 struct Include {
@@ -183,6 +189,7 @@ TEST_CASE("a wrong include is found, with its file, line and rule", "[architectu
   CHECK(wrong("calibrator/surrogate.cpp", "#include <nlopt.hpp>").size() == 1);
   CHECK(wrong("db/store.cpp", "#include <sqlite3.h>").size() == 1);
   CHECK(wrong("db/store.cpp", "#include \"engine/unit.hpp\"").size() == 1);
+  CHECK(wrong("db/store.cpp", "#include <fcntl.h>").size() == 1);
   CHECK(wrong("server/service.cpp", "#include <nlohmann/json.hpp>").size() == 1);
   CHECK(wrong("server/service.cpp", "#include <httplib.h>").size() == 1);
   CHECK(wrong("server/service.cpp", "#include <catch2/catch.hpp>").size() == 1);
