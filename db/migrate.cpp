@@ -46,6 +46,18 @@ void check_schema(Connection& connection) {
   }
 }
 
+void check_current(Connection& connection) {
+  check_schema(connection);
+  const std::int64_t version = pragma(connection, "user_version");
+  if (version < newest_schema()) {
+    throw Error(0,
+                "database " + connection.file().string() + " has schema " +
+                    std::to_string(version) + ", this program reads " +
+                    std::to_string(newest_schema()) +
+                    ": calibrate or serve with it once, which brings it up to date");
+  }
+}
+
 void migrate(Connection& connection) {
   check_schema(connection);
   for (std::int64_t version = pragma(connection, "user_version"); version < newest_schema();
@@ -54,6 +66,9 @@ void migrate(Connection& connection) {
     connection.run(std::string(embedded_migrations[static_cast<std::size_t>(version)].second));
     connection.run("PRAGMA application_id = " + std::to_string(application_id));
     connection.run("PRAGMA user_version = " + std::to_string(version + 1));
+    if (connection.prepare("PRAGMA foreign_key_check").step()) {
+      throw Error(0, "database " + connection.file().string() + " has rows that refer to nothing");
+    }
     transaction.commit();
   }
 }

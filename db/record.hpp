@@ -15,7 +15,7 @@ struct CalibrationRecord {
   std::int64_t created_at = 0;
   std::optional<std::int64_t> started_at;
   std::optional<std::int64_t> finished_at;
-  std::string request;                ///< the study document
+  std::string request;  ///< the study document
   std::string request_digest;
   std::optional<std::string> progress;  ///< document
   std::optional<std::string> fit;       ///< document

@@ -48,6 +48,11 @@ Connection::Connection(const std::filesystem::path& file, Mode mode) : file_(fil
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
   sqlite3_busy_timeout(handle_, 5000);
+  // Only the writer moves pages from the log to the file.
+  if (mode == Mode::read) {
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+    sqlite3_wal_autocheckpoint(handle_, 0);
+  }
 }
 
 Connection::~Connection() { sqlite3_close_v2(handle_); }

@@ -55,7 +55,7 @@ void set_up(Connection& connection, Access access) {
   connection.run("PRAGMA cell_size_check = ON");
   if (access == Access::read) {
     connection.run("PRAGMA query_only = ON");
-    check_schema(connection);
+    check_current(connection);
     return;
   }
   check_schema(connection);  // before anything is written to a file that may not be ours

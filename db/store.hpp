@@ -1,5 +1,5 @@
-/// Store: the verbs. Every verb is one transaction: it happens wholly or, with a db::Error, not at all.
-/// Safe to call from several threads.
+/// Store: the verbs. Every verb is one transaction: it happens wholly or, with a db::Error, not at
+/// all. Safe to call from several threads.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,9 @@ namespace repose::db {
 class Error : public std::runtime_error {
  public:
   Error(int code, const std::string& text) : std::runtime_error(text), code_(code) {}
-  [[nodiscard]] int code() const { return code_; }  ///< SQLite's extended code; 0 where it is not its
+  [[nodiscard]] int code() const {
+    return code_;
+  }  ///< SQLite's extended code; 0 where it is not its
 
  private:
   int code_;

@@ -152,6 +152,8 @@ TEST_CASE("one process writes at a time, others may read", "[db]") {
 TEST_CASE("a reader of nothing, of rubbish and of a newer file is told so", "[db]") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH(Store(folder / "none.db", Access::read), Catch::Contains("cannot open"));
+  std::ofstream(folder / "empty.db").close();
+  CHECK_THROWS_WITH(Store(folder / "empty.db", Access::read), Catch::Contains("schema 0"));
   CHECK_THROWS_WITH(Store(folder / "no" / "such" / "folder.db", Access::write),
                     Catch::Contains("folder exists"));
   std::ofstream(folder / "rubbish.db") << std::string(5000, 'x');
