@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <utility>
+#include <iterator>
+#include <set>
 
 #include "server/report/label.hpp"
 #include "server/report/number_text.hpp"
@@ -60,6 +60,7 @@ std::string count_of(std::size_t count, const std::string& noun) {
 
 std::string all_met(std::size_t count, const std::string& within_what) {
   if (count == 1) return "The measurement is met within " + within_what + ".";
+  if (count == 2) return "Both measurements are met within " + within_what + ".";
   return "All " + count_of(count, "measurement") + " are met within " + within_what + ".";
 }
 
@@ -84,22 +85,50 @@ std::string interval_text(const Calibration& calibration, std::size_t index, con
          number_text(fitted.upper / unit.factor, 3) + unit_suffix(unit);
 }
 
-/// What may be changed together without a measurement telling.
-std::string open_direction(const Calibration& calibration, const Direction& direction) {
+/// The parameters that make up a direction, apart by sign.
+struct Parts {
+  std::vector<std::string> same, opposite;  // the first one's sign, and the other
+
+  [[nodiscard]] std::set<std::string> all() const {
+    std::set<std::string> names(same.begin(), same.end());
+    names.insert(opposite.begin(), opposite.end());
+    return names;
+  }
+};
+
+Parts parts_of(const Calibration& calibration, const Direction& direction) {
   constexpr double counts = 0.35;  // of a unit vector: smaller parts are not worth a word
-  std::vector<std::string> same, opposite;
+  Parts parts;
   double sign = 0.0;
   for (std::size_t i = 0; i < direction.components.size(); ++i) {
     const double size = direction.components[i];
     if (std::abs(size) < counts) continue;
     if (sign == 0.0) sign = size;
-    (size * sign > 0.0 ? same : opposite).push_back(parameter_label(calibration.free.at(i).key));
+    const std::string label = parameter_label(calibration.free.at(i).key);
+    (size * sign > 0.0 ? parts.same : parts.opposite).push_back(label);
   }
-  if (same.size() + opposite.size() < 2) return {};
-  const std::string how = opposite.empty()
-                              ? "Raising " + enumerate(same) + " together"
-                              : "More " + enumerate(same) + " with less " + enumerate(opposite);
-  return how + ", or the reverse, changes the measurements too little to be told.";
+  return parts;
+}
+
+/// What may be changed together without a measurement telling. Where two open directions are made
+/// of the same parameters, each of these is open by itself and there is no trade to tell of.
+std::vector<std::string> open_directions(const Calibration& calibration, const Fit& fit) {
+  std::vector<Parts> open;
+  for (const Direction& direction : fit.directions) {
+    if (!direction.learnt) open.push_back(parts_of(calibration, direction));
+  }
+  std::vector<std::string> sentences;
+  for (const Parts& parts : open) {
+    const std::set<std::string> all = parts.all();
+    const auto twins = std::ranges::count_if(open, [&](const Parts& p) { return p.all() == all; });
+    if (all.size() < 2 || twins > 1) continue;
+    const std::string how =
+        parts.opposite.empty()
+            ? "Raising " + enumerate(parts.same) + " together"
+            : "More " + enumerate(parts.same) + " with less " + enumerate(parts.opposite);
+    sentences.push_back(how + ", or the reverse, changes the measurements too little to be told.");
+  }
+  return sentences;
 }
 
 }  // namespace
@@ -171,10 +200,7 @@ std::vector<std::string> learnt_sentences(const Calibration& calibration, const 
     sentences.push_back(count_of(learnt, "combination") + " of the " +
                         count_of(fit.directions.size(), "free parameter") +
                         (learnt == 1 ? " was" : " were") + " learnt.");
-    for (const Direction& direction : fit.directions) {
-      std::string sentence = direction.learnt ? "" : open_direction(calibration, direction);
-      if (!sentence.empty()) sentences.push_back(std::move(sentence));
-    }
+    std::ranges::move(open_directions(calibration, fit), std::back_inserter(sentences));
   }
   const auto held_out = predictions_of(calibration, fit, Role::held_out);
   if (!held_out.empty()) {

@@ -51,7 +51,7 @@ server::CalibrationDocument sample() {
   fit.best.set(rolling, 0.05);
   fit.parameters = {{friction, 0.45, 0.40, 0.52, false, false, 0.93, true},
                     {rolling, 0.05, 0.005, 0.21, true, false, 0.3, false}};
-  fit.directions = {{{0.9, 0.43}, 0.1, true}, {{-0.43, 0.9}, 0.9, false}};
+  fit.directions = {{{0.95, 0.31}, 0.1, true}, {{-0.31, 0.95}, 0.9, false}};
   calibrator::Prediction kettle, box;
   kettle.measurement = 0;
   kettle.predicted = 716.0;
@@ -136,9 +136,9 @@ TEST_CASE("an undetermined parameter looks different from a determined one", "[s
 TEST_CASE("the headline says whether the measurements are met", "[server]") {
   auto document = sample();
   const auto said = [&] { return server::headline(*document.calibration, *document.fit); };
-  CHECK(said() == "All 2 measurements are met within one standard error.");
+  CHECK(said() == "Both measurements are met within one standard error.");
   document.fit->predictions[0].z = 1.4;
-  CHECK(said() == "All 2 measurements are met within two standard errors.");
+  CHECK(said() == "Both measurements are met within two standard errors.");
   document.fit->predictions[0].z = -3.1;
   CHECK(said() ==
         "1 of 2 measurements is missed by more than two standard errors: kettle: bulk "
@@ -165,6 +165,18 @@ TEST_CASE("what was not learnt is said in words", "[server]") {
                       "0.005 to 0.21"));
   CHECK_THAT(text, Contains("1 combination of the 2 free parameters was learnt."));
   CHECK_THAT(text, Contains("rolling_resistance.coefficient:grain-grain"));
+}
+
+TEST_CASE("parameters that are each open by themselves are not called a trade", "[server]") {
+  auto document = sample();
+  const auto said = [&] { return server::print_summary(document); };
+  CHECK_FALSE(Contains("too little to be told").match(said()));  // the open one is rolling's
+  document.fit->directions[1].components = {-0.7, 0.71};
+  CHECK_THAT(said(),
+             Contains("More sliding friction (grain-grain) with less rolling resistance "
+                      "(grain-grain), or the reverse, changes the measurements too little"));
+  document.fit->directions[0] = {{0.71, 0.7}, 0.9, false};
+  CHECK_FALSE(Contains("too little to be told").match(said()));
 }
 
 TEST_CASE("a calibration without a fit still has a report", "[server]") {
