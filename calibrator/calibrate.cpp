@@ -401,7 +401,7 @@ void Search::fill_parameters(Fit& fit, const UnitPoint& best) const {
 
 Fit calibrate(const Calibration& calibration,
               const Evaluator& evaluator,
-              std::stop_token stop,
+              std::stop_token stop,  // NOLINT(performance-unnecessary-value-param): as declared
               const ProgressObserver& observer) {
   return Search(calibration, evaluator, stop, observer).run();
 }

@@ -161,7 +161,7 @@ void on_verdict(const Calibration& calibration, const Fit& fit, Sentences& out) 
 }  // namespace
 
 std::string parameter_name(const engine::ParameterKey& key) {
-  const std::string text = engine::to_string(key);
+  std::string text = engine::to_string(key);
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) return text;
   return text.substr(colon + 1) + " " + text.substr(0, colon);
