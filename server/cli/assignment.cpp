@@ -91,7 +91,7 @@ std::optional<std::vector<MaterialId>> parse_between(std::string_view text) {
 }
 
 std::string wanted_key(std::string_view field, engine::Scope scope) {
-  const std::string name(field);
+  std::string name(field);
   switch (scope) {
     case engine::Scope::global:
       return name;

@@ -53,7 +53,7 @@ Scales scales_of(const Fit& fit, double fitted) {
 }
 
 void draw_axes(Svg& svg, const Scales& scales, double fitted) {
-  for (double power = scales.lowest; power <= scales.highest; power += 1.0) {
+  for (int power = static_cast<int>(scales.lowest); power <= scales.highest; ++power) {
     const double y = scales.y(std::pow(10.0, power));
     svg.line(left, y, right, y, "grid");
     svg.text(left - 6.0, y + 4.0, number_text(std::pow(10.0, power)), "end", "tick right");

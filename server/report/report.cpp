@@ -119,11 +119,10 @@ std::string measurement_row(const Measurement& measurement, const Prediction& pr
           cell("predicted", with_error(prediction.predicted, prediction.standard_error, unit));
   const double difference = (prediction.predicted - measurement.value) / unit.factor;
   const double error = measurement.standard_error / unit.factor;
-  const std::string sign = difference > 0.0 ? "+" : "";
-  text +=
-      cell("difference",
-           std::isnan(difference) ? "-"
-                                  : sign + fixed_text(difference, decimals_for(difference, error)));
+  std::string shown = "-";
+  if (!std::isnan(difference)) shown = fixed_text(difference, decimals_for(difference, error));
+  const bool plus = difference > 0.0 && shown.find_first_of("123456789") != std::string::npos;
+  text += cell("difference", plus ? "+" + shown : shown);
   const std::string z = std::isfinite(prediction.z)
                             ? (prediction.z > 0.0 ? "+" : "") + fixed_text(prediction.z, 2)
                             : "-";

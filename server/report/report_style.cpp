@@ -63,7 +63,7 @@ td.open { color: var(--quiet); font-style: italic; }
 .pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 400px), 1fr)); gap: 28px 40px;
   margin-top: 22px; }
 .pair > * { min-width: 0; }
-figure { margin: 0; }
+figure { margin: 0; max-width: 620px; }
 figure img { display: block; width: 100%; height: auto; border-radius: 8px; background: var(--picture); }
 figcaption { margin-top: 8px; font-size: 14px; color: var(--quiet); }
 figcaption b { color: var(--ink); }

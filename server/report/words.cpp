@@ -14,7 +14,6 @@ using calibrator::Calibration;
 using calibrator::Direction;
 using calibrator::Fit;
 using calibrator::FittedParameter;
-using calibrator::Measurement;
 using calibrator::Prediction;
 using calibrator::Role;
 using calibrator::StopReason;

@@ -12,7 +12,6 @@
 #include "server/report/frame_files.hpp"
 #include "server/report/image.hpp"
 
-using repose::engine::Frame;
 using repose::engine::FrameGrain;
 using repose::server::base64;
 using repose::server::FrameFiles;

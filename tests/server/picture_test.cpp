@@ -11,7 +11,6 @@ using repose::engine::FrameWall;
 using repose::engine::Vec3;
 using repose::server::Image;
 using repose::server::picture;
-using repose::server::PictureOptions;
 
 namespace {
 
