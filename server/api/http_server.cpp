@@ -56,19 +56,18 @@ void send(Reply reply, httplib::Response& response) {
 /// Answers and closes the connection. The library closes it only where writing fails: so the body
 /// is written, and then said to have failed. What is left of the request is thus never read as the
 /// next one.
-void send_and_close(Reply reply, const httplib::Request& request, httplib::Response& response) {
+void send_and_close(Reply reply, httplib::Request& request, httplib::Response& response) {
   response.status = reply.status;
   response.set_header("Connection", "close");
   response.set_content_provider(
       reply.body.size(),
       reply.content_type,
-      [body = std::move(reply.body)](std::size_t, std::size_t, httplib::DataSink& sink) {
+      [body = reply.body](std::size_t, std::size_t, httplib::DataSink& sink) {
         sink.write(body.data(), body.size());
         return false;
       });
-  // An answer to HEAD has no body, so nothing would fail. The request is the library's own
-  // variable, not a constant.
-  if (request.method == "HEAD") const_cast<httplib::Request&>(request).method = "GET";
+  // An answer to HEAD has no body, so nothing would fail.
+  if (request.method == "HEAD") request.method = "GET";
 }
 
 /// Without the library's SO_REUSEPORT, with which two servers share a port unawares.
@@ -127,9 +126,13 @@ struct HttpServer::State {
 
   void set_handlers() {
     using Handled = httplib::Server::HandlerResponse;
-    http.set_pre_routing_handler([this](const httplib::Request& request,
+    http.set_pre_routing_handler([this](const httplib::Request& given,
                                         httplib::Response& response) {
-      auto refusal = refuse(head_of(request), names);
+      auto refusal = refuse(head_of(given), names);
+      // The library's own variable, handed on as a constant. Answers are whole: a range would be
+      // cut out of them, problems included.
+      auto& request = const_cast<httplib::Request&>(given);
+      request.ranges.clear();
       if (!refusal) return Handled::Unhandled;
       send_and_close(problem_reply(refusal->status, std::move(refusal->detail)), request, response);
       return Handled::Handled;

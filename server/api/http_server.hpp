@@ -13,8 +13,9 @@ namespace repose::server {
 
 struct HttpOptions {
   std::string host = "127.0.0.1";
-  int port = 0;                    ///< 0: any that is free
-  std::vector<std::string> names;  ///< hosts to answer for, beside `host` and the loopback's names
+  int port = 0;  ///< 0: any that is free
+  std::vector<std::string> names =
+      {};  ///< hosts to answer for, beside `host` and the loopback's names
 };
 
 class HttpServer {

@@ -128,8 +128,9 @@ void read_fields(const Place& place,
   for (const auto& [name, member] : Members(place).all()) {
     const auto field = std::ranges::find(fields, std::string_view(name), &FieldInfo::name);
     if (field == fields.end()) {
-      member.complain(std::string(what) + " has no such member" + did_you_mean(name, names),
-                      "\"" + name.substr(0, 64) + "\"",
+      const std::string quoted = "\"" + name.substr(0, 64) + "\"";
+      member.complain(std::string(what) + " has no " + quoted + did_you_mean(name, names),
+                      quoted,
                       listed(names));
       continue;
     }

@@ -134,7 +134,9 @@ void check_study(const Place& document, const Study& study) {
   const int spent = study.calibration.budget.evaluations;
   if (study.free_named > 0 && static_cast<std::size_t>(spent) < fewest) {
     document.problems().add({"/budget/evaluations",
-                             std::to_string(study.free_named) + " free parameters need at least " +
+                             std::to_string(study.free_named) +
+                                 (study.free_named == 1 ? " free parameter needs at least "
+                                                        : " free parameters need at least ") +
                                  std::to_string(fewest) +
                                  " evaluations (twice their number and eight)",
                              std::to_string(spent),

@@ -1,0 +1,17 @@
+/// Checks a document against a schema: the part of JSON Schema draft 7 that ours use.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace repose::tests {
+
+using Json = nlohmann::ordered_json;
+
+/// What is wrong, each with its pointer; nothing where the document conforms. A keyword that is not
+/// known here is reported too: a check that does nothing would pass for one that passed.
+std::vector<std::string> violations(const Json& schema, const Json& document);
+
+}  // namespace repose::tests

@@ -1,0 +1,243 @@
+#include <arpa/inet.h>
+#include <array>
+#include <atomic>
+#include <netinet/in.h>
+#include <stdexcept>
+#include <string>
+#include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+
+#include "server/api/http_server.hpp"
+
+namespace {
+
+using repose::server::HttpOptions;
+using repose::server::HttpServer;
+using repose::server::Reply;
+using repose::server::Request;
+
+/// A server that answers with what it was asked.
+class Running {
+ public:
+  explicit Running(const HttpOptions& options = {})
+      : server_([this](const Request& request) { return answer(request); }, options),
+        thread_([this] { server_.run(); }) {}
+  ~Running() {
+    server_.stop();
+    thread_.join();
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  [[nodiscard]] int port() const { return server_.port(); }
+  [[nodiscard]] int answered() const { return answered_; }
+
+ private:
+  Reply answer(const Request& request) {
+    ++answered_;
+    if (request.path == "/throw") throw std::runtime_error("a secret");
+    return {.status = 200,
+            .body = request.method + " " + request.path + " " + std::to_string(request.body.size()),
+            .content_type = "text/plain"};
+  }
+
+  std::atomic<int> answered_ = 0;
+  HttpServer server_;
+  std::thread thread_;
+};
+
+/// Bytes over a socket, as no well-behaved client would send them.
+class Wire {
+ public:
+  explicit Wire(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval patience{20, 0};  // ends a test that would wait for ever
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    if (connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+      throw std::runtime_error("cannot connect");
+    }
+  }
+  ~Wire() { close(socket_); }
+  Wire(const Wire&) = delete;
+  Wire& operator=(const Wire&) = delete;
+
+  void send(std::string_view text) const {
+    while (!text.empty()) {
+      const ssize_t sent = ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
+      if (sent <= 0) return;  // the other end has closed: what it said is still to be read
+      text.remove_prefix(static_cast<std::size_t>(sent));
+    }
+  }
+  /// Everything until the other end closes.
+  [[nodiscard]] std::string rest() const {
+    std::string text;
+    while (read_some(text)) {
+    }
+    return text;
+  }
+  /// Everything until that text has come.
+  [[nodiscard]] std::string until(std::string_view end) const {
+    std::string text;
+    while (text.find(end) == std::string::npos && read_some(text)) {
+    }
+    return text;
+  }
+
+ private:
+  bool read_some(std::string& text) const {
+    std::array<char, 4096> block{};
+    const ssize_t count = recv(socket_, block.data(), block.size(), 0);
+    if (count <= 0) return false;
+    text.append(block.data(), static_cast<std::size_t>(count));
+    return true;
+  }
+
+  int socket_;
+};
+
+/// All that comes back to one request, the server having closed.
+std::string talk(int port, const std::string& request) {
+  const Wire wire(port);
+  wire.send(request);
+  return wire.rest();
+}
+
+std::string status_line(const std::string& answer) { return answer.substr(0, answer.find('\r')); }
+
+bool has(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
+const std::string get = "GET /x HTTP/1.1\r\nHost: localhost\r\n";
+const std::string post = "POST /x HTTP/1.1\r\nHost: localhost\r\n";
+
+}  // namespace
+
+TEST_CASE("a request is answered, and its answer may not be sniffed or stored", "[server]") {
+  const Running server;
+  const std::string answer = talk(server.port(), get + "Connection: close\r\n\r\n");
+  CHECK(has(status_line(answer), "200"));
+  CHECK(has(answer, "GET /x 0"));
+  CHECK(has(answer, "X-Content-Type-Options: nosniff"));
+  CHECK(has(answer, "Cache-Control: no-store"));
+}
+
+TEST_CASE("a connection carries many requests", "[server]") {
+  const Running server;
+  const Wire wire(server.port());
+  for (int i = 0; i < 20; ++i) {
+    wire.send(post + "Content-Length: 3\r\n\r\nabc");
+    CHECK(has(wire.until("POST /x 3"), "200 OK"));
+  }
+}
+
+TEST_CASE("hostile requests are refused with a problem, and the connection is closed", "[server]") {
+  struct Attack {
+    const char* status;
+    std::string request;
+  };
+  const std::string lines = [] {
+    std::string text;
+    for (int i = 0; i < 100; ++i) text += "X-" + std::to_string(i) + ": y\r\n";
+    return text;
+  }();
+  const std::string smuggled = "GET /smuggled HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  const Running server;
+  for (const auto& [status, request] : {
+           Attack{"411", post + "Transfer-Encoding: chunked\r\n\r\n0\r\n\r\n" + smuggled},
+           Attack{"411",
+                  post + "Content-Length: 6\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n" +
+                      smuggled},
+           Attack{"411", post + "\r\n" + smuggled},
+           Attack{"400", post + "Content-Length: 6\r\nContent-Length: 3\r\n\r\nabc" + smuggled},
+           Attack{"400", post + "Content-Length: -1\r\n\r\n" + smuggled},
+           Attack{"400", get + "Content-Length: 48\r\n\r\n" + smuggled},
+           Attack{"400",
+                  "HEAD /x HTTP/1.1\r\nHost: localhost\r\nContent-Length: 48\r\n\r\n" + smuggled},
+           Attack{"415", post + "Content-Length: 6\r\nContent-Encoding: gzip\r\n\r\nabcdef"},
+           Attack{"416", get + "Range: bytes=0-,0-,0-,0-\r\n\r\n"},
+           Attack{"400", "GET /x HTTP/1.1\r\n\r\n"},
+           Attack{"400", get + "Host: localhost\r\n\r\n"},
+           Attack{"421", "GET /x HTTP/1.1\r\nHost: evil.example\r\n\r\n"},
+           Attack{"431", get + lines + "\r\n"},
+           Attack{"400", get + "X-Test: a%0D%0AEvil: 1\r\n\r\n"},
+       }) {
+    INFO(request);
+    const std::string answer = talk(server.port(), request);
+    CHECK(has(status_line(answer), status));
+    CHECK(has(answer, "application/problem+json"));
+    CHECK(has(answer, "\"status\":" + std::string(status)));
+  }
+  CHECK(server.answered() == 0);
+}
+
+TEST_CASE("a body larger than a mebibyte is refused", "[server]") {
+  const Running server;
+  const auto send = [&](std::size_t size) {
+    return talk(server.port(),
+                post + "Connection: close\r\nContent-Length: " + std::to_string(size) + "\r\n\r\n" +
+                    std::string(size, 'x'));
+  };
+  CHECK(has(status_line(send(1U << 20U)), "200"));
+  const std::string answer = send((1U << 20U) + 1);
+  CHECK(has(status_line(answer), "413"));
+  CHECK(has(answer, "urn:repose:problem:too-large"));
+}
+
+TEST_CASE("what a failing handler says stays in the log", "[server]") {
+  const Running server;
+  const std::string answer =
+      talk(server.port(), "GET /throw HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+  CHECK(has(status_line(answer), "500"));
+  CHECK(has(answer, "urn:repose:problem:internal"));
+  CHECK(!has(answer, "secret"));
+}
+
+TEST_CASE("a method that nobody knows is a bad request with a problem", "[server]") {
+  const Running server;
+  const std::string answer =
+      talk(server.port(), "BREW /x HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+  CHECK(has(status_line(answer), "400"));
+  CHECK(has(answer, "application/problem+json"));
+}
+
+TEST_CASE("the name that was bound is answered for, and those that are given", "[server]") {
+  const Running server({.host = "127.0.0.1", .port = 0, .names = {"dem.example"}});
+  const std::string answer =
+      talk(server.port(), "GET /x HTTP/1.1\r\nHost: dem.example:80\r\nConnection: close\r\n\r\n");
+  CHECK(has(status_line(answer), "200"));
+}
+
+TEST_CASE("a port that is taken is an error that names it", "[server]") {
+  const Running first;
+  const std::string port = std::to_string(first.port());
+  try {
+    const HttpServer second([](const Request&) { return Reply{}; }, {.port = first.port()});
+    FAIL("two servers share the port");
+  } catch (const std::runtime_error& error) {
+    CHECK(has(error.what(), "127.0.0.1:" + port));
+    CHECK(has(error.what(), "in use"));
+  }
+}
+
+TEST_CASE("a server that never ran gives its port back", "[server]") {
+  int port = 0;
+  {
+    const HttpServer idle([](const Request&) { return Reply{}; }, {});
+    port = idle.port();
+  }
+  const Running next({.port = port});
+  CHECK(next.port() == port);
+}
+
+TEST_CASE("a server that is stopped before it runs does not run", "[server]") {
+  HttpServer server([](const Request&) { return Reply{}; }, {});
+  server.stop();
+  server.run();
+}

@@ -1,0 +1,54 @@
+#include "server/json/openapi.hpp"
+
+#include <set>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "server/json/text.hpp"
+
+namespace {
+
+using repose::server::Json;
+
+const Json& description() {
+  static const Json json = Json::parse(repose::server::print_openapi(repose::server::routes()));
+  return json;
+}
+
+void collect_references(const Json& json, std::set<std::string>& into) {
+  for (const auto& [name, value] : json.items()) {
+    if (json.is_object() && name == "$ref") into.insert(value.get<std::string>());
+    if (value.is_structured()) collect_references(value, into);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("every route is described, with its body, its answer and its problems", "[server]") {
+  for (const repose::server::Route& route : repose::server::routes()) {
+    std::string method(route.method);
+    for (char& letter : method) letter = static_cast<char>(letter - 'A' + 'a');
+    const Json& operation = description()["paths"][std::string(route.pattern)][method];
+    CHECK(operation["operationId"] == route.name);
+    CHECK(operation.contains("requestBody") == !route.request.empty());
+    CHECK(operation["responses"].contains(std::to_string(route.success)));
+    CHECK(operation["responses"].contains("4XX"));
+  }
+}
+
+TEST_CASE("every reference of the description leads somewhere within it", "[server]") {
+  std::set<std::string> references;
+  collect_references(description(), references);
+  CHECK(references.size() > 10);
+  for (const std::string& reference : references) {
+    INFO(reference);
+    REQUIRE(reference.starts_with("#/"));
+    CHECK(description().contains(Json::json_pointer(reference.substr(1))));
+  }
+}
+
+TEST_CASE("the schemas of requests hold no regular expression", "[server]") {
+  CHECK(to_string(description()["components"]["schemas"]["calibration"]).find("\"pattern\"") ==
+        std::string::npos);
+}
