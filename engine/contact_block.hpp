@@ -13,7 +13,7 @@
 ///                 shear_damping
 ///   rolling       roll, spins, elastic_force,        couple_x..z
 ///                 grip_force
-///   loads         all forces                         force_x..z, torque_i_x..z, torque_j_x..z
+///   loads         all forces                         load_i, load_j
 ///
 /// Lanes past the last contact hold two spheres that just touch, at rest: loops always run to
 /// `width`.
@@ -26,26 +26,45 @@ namespace repose::engine {
 /// What the contacts of a block have at their end j.
 enum class Partner { grain, wall };
 
+/// Lengths after which a scene repeats along x and y, m; 0 where it does not.
+struct Period {
+  double x = 0.0, y = 0.0;
+};
+
+/// Sixty-four contacts.
 struct ContactBlock {
   static constexpr int width = 64;
   using Column = std::array<double, width>;
 
-  // Ends, as gathered.
-  alignas(64) Column normal_x, normal_y, normal_z;    ///< centre i - centre j, m; then unit normal
-  alignas(64) Column radius_i, radius_j;              ///< m
-  alignas(64) Column inverse_mass_i, inverse_mass_j;  ///< 1/kg; 0 for a wall
-  alignas(64) Column slip_x, slip_y, slip_z;          ///< velocity i - velocity j, m/s; then the
-                                                      ///< tangential velocity at the contact
-  alignas(64) Column spin_i_x, spin_i_y, spin_i_z;    ///< rad/s
-  alignas(64) Column spin_j_x, spin_j_y, spin_j_z;    ///< rad/s
+  /// The grain (or wall point) at one end of each contact: columns of what its row has, in its
+  /// order.
+  struct End {
+    alignas(64) Column x, y, z;          ///< centre, m
+    alignas(64) Column radius;           ///< m; 0 for a wall
+    alignas(64) Column vx, vy, vz;       ///< m/s
+    alignas(64) Column inverse_mass;     ///< 1/kg; 0 for a wall
+    alignas(64) Column wx, wy, wz;       ///< spin, rad/s
+    alignas(64) Column inverse_inertia;  ///< 1/(kg m2)
+  };
+  /// What the grain at one end receives.
+  struct Load {
+    alignas(64) Column fx, fy, fz;  ///< N
+    alignas(64) Column tx, ty, tz;  ///< about its centre, N m
+  };
+
+  End i, j;
+  Load load_i, load_j;
+  Period period;  ///< differences of x and y are those of the nearest images
 
   // Kinematics.
-  alignas(64) Column overlap;                 ///< m, >= 0
-  alignas(64) Column radius;                  ///< reduced radius R*, m
-  alignas(64) Column mass;                    ///< reduced mass m*, kg
-  alignas(64) Column arm_i, arm_j;            ///< from the centres to the contact point, m
-  alignas(64) Column approach;                ///< normal speed of approach, m/s
-  alignas(64) Column roll_x, roll_y, roll_z;  ///< spin i - spin j without the twist, rad/s
+  alignas(64) Column normal_x, normal_y, normal_z;  ///< from j to i, of unit length
+  alignas(64) Column slip_x, slip_y, slip_z;        ///< tangential velocity at the contact, m/s
+  alignas(64) Column overlap;                       ///< m, >= 0
+  alignas(64) Column radius;                        ///< reduced radius R*, m
+  alignas(64) Column mass;                          ///< reduced mass m*, kg
+  alignas(64) Column arm_i, arm_j;                  ///< from the centres to the contact point, m
+  alignas(64) Column approach;                      ///< normal speed of approach, m/s
+  alignas(64) Column roll_x, roll_y, roll_z;        ///< spin i - spin j without the twist, rad/s
 
   // Forces.
   alignas(64) Column patch_radius;   ///< of the contact patch, sqrt(R* overlap), m
@@ -55,11 +74,6 @@ struct ContactBlock {
   alignas(64) Column shear_damping;  ///< tangential dashpot, N s/m
   alignas(64) Column tangent_x, tangent_y, tangent_z;  ///< friction force on i, N
   alignas(64) Column couple_x, couple_y, couple_z;     ///< rolling couple on i (opposite on j), N m
-
-  // Loads, to be added to the grains.
-  alignas(64) Column force_x, force_y, force_z;           ///< on i, N; j takes the opposite
-  alignas(64) Column torque_i_x, torque_i_y, torque_i_z;  ///< on i about its centre, N m
-  alignas(64) Column torque_j_x, torque_j_y, torque_j_z;  ///< on j about its centre, N m
 
   int count = 0;               ///< contacts in the block
   double modulus = 0.0;        ///< E* of the pair, Pa

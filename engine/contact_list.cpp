@@ -150,6 +150,11 @@ void ContactList::sort_by_cell(Grains& grains, const Vec3& period) {
 void ContactList::find_pairs(const Grains& grains, const Vec3& period) {
   double largest = 0.0;
   for (const GrainRow& g : grains.rows) largest = std::max(largest, g.radius);
+  spots_.resize(grains.size());
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    const GrainRow& g = grains.rows[k];
+    spots_[k] = {g.x, g.y, g.z, g.radius + skins_[k], skins_[k], grains.ids[k]};
+  }
   pairs.i.clear();
   pairs.j.clear();
   const Vec3 edge{(grid_.high.x - grid_.low.x) / grid_.nx,
@@ -159,24 +164,24 @@ void ContactList::find_pairs(const Grains& grains, const Vec3& period) {
     return around(at - reach, at + reach, low, width > 0.0 ? width : 1.0, cells, round);
   };
   for (std::uint32_t a = 0; a < grains.size(); ++a) {
-    const GrainRow& g = grains.rows[a];
-    const double skin = skins_[a];
-    const std::uint32_t id = grains.ids[a];
-    // Of two grains the one with the larger skin finds the other: its reach covers both skins.
-    const double reach = g.radius + largest + 2.0 * skin;
+    const Spot g = spots_[a];
+    // Of two grains the one with the larger skin finds the other, of equal skins the one before it
+    // in the rows. Its reach covers both skins.
+    const double reach = g.near + largest + g.skin;
     const Span sx = axis(g.x, reach, grid_.low.x, edge.x, grid_.nx, period.x > 0.0);
     const Span sy = axis(g.y, reach, grid_.low.y, edge.y, grid_.ny, period.y > 0.0);
     const Span sz = axis(g.z, reach, grid_.low.z, edge.z, grid_.nz, false);
+    const bool slowest = g.skin == slowest_skin_;
     const auto visit = [&](std::uint32_t first, std::uint32_t last) {
-      for (std::uint32_t b = first; b < last; ++b) {
-        if (skins_[b] > skin || (skins_[b] == skin && grains.ids[b] <= id)) continue;
-        const GrainRow& h = grains.rows[b];
+      for (std::uint32_t b = slowest ? std::max(first, a + 1) : first; b < last; ++b) {
+        const Spot& h = spots_[b];
         const double dx = wrapped(g.x - h.x, period.x);
         const double dy = wrapped(g.y - h.y, period.y);
         const double dz = g.z - h.z;
-        const double near = g.radius + h.radius + skin + skins_[b];
+        const double near = g.near + h.near;
         if (dx * dx + dy * dy + dz * dz >= near * near) continue;
-        const bool first_is_a = id < grains.ids[b];
+        if (h.skin > g.skin || (h.skin == g.skin && b <= a)) continue;
+        const bool first_is_a = g.id < h.id;
         pairs.i.push_back(first_is_a ? a : b);
         pairs.j.push_back(first_is_a ? b : a);
       }
@@ -220,9 +225,12 @@ void ContactList::rebuild(Grains& grains,
   const std::size_t n = grains.size();
   skins_.resize(n);
   anchors_.resize(n);
+  double largest = 0.0;
+  for (const GrainRow& g : grains.rows) largest = std::max(largest, g.radius);
+  slowest_skin_ = least_skin * largest;
   for (std::size_t k = 0; k < n; ++k) {
     const GrainRow& g = grains.rows[k];
-    skins_[k] = std::max(least_skin * g.radius, norm(g.velocity()) * horizon);
+    skins_[k] = std::max(slowest_skin_, norm(g.velocity()) * horizon);
     anchors_[k] = {g.x, g.y, g.z, skins_[k] * skins_[k]};
   }
   find_pairs(grains, period);

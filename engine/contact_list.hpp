@@ -69,6 +69,14 @@ class ContactList {
               Candidates& candidates,
               const Grains& grains,
               Partner partner) const;
+  /// A grain as the search sees it, packed.
+  struct Spot {
+    double x, y, z;
+    double near;  ///< radius and skin
+    double skin;
+    std::uint32_t id;
+  };
+
   void sort_by_cell(Grains& grains, const Vec3& period);
   void find_pairs(const Grains& grains, const Vec3& period);
   void find_walls(const Grains& grains, std::span<const Surface> surfaces);
@@ -83,6 +91,8 @@ class ContactList {
   int history_columns_;
   Grid grid_;
   std::vector<double> skins_;
+  double slowest_skin_ = 0.0;
+  std::vector<Spot> spots_;
   std::vector<Anchor> anchors_;
   std::vector<std::uint32_t> cell_of_;
 };

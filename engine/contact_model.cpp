@@ -2,17 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
-// One binary, fast everywhere: the block kernel is compiled for three instruction sets and the
-// loader picks one. Bits are equal on all, since nothing is contracted. clang 14 refuses the
-// attribute, and the sanitizers' start-up cannot resolve it.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(REPOSE_SANITIZED)
-#define REPOSE_ANY_MACHINE \
-  __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4"), flatten))
-#else
-#define REPOSE_ANY_MACHINE
-#endif
+#include "engine/any_machine.hpp"
 
 namespace repose::engine {
 
@@ -20,49 +13,62 @@ namespace {
 
 constexpr int width = ContactBlock::width;
 
+/// Half a period, or more than any distance where there is none.
+double half(double period) {
+  return period > 0.0 ? 0.5 * period : std::numeric_limits<double>::infinity();
+}
+
 /// Geometry and relative motion from the gathered ends. Velocities at the contact point include
 /// both spins; the point divides the overlap of two grains in halves and lies on a wall's surface.
 template <Partner partner>
 [[gnu::always_inline]] inline void kinematics(ContactBlock& c) {
-  constexpr double share_i = partner == Partner::grain ? 0.5 : 1.0;
-  for (int i = 0; i < width; ++i) {
-    const double dx = c.normal_x[i], dy = c.normal_y[i], dz = c.normal_z[i];
+  const ContactBlock::End& a = c.i;
+  const ContactBlock::End& b = c.j;
+  constexpr bool grain = partner == Partner::grain;
+  constexpr double share_i = grain ? 0.5 : 1.0;
+  const double px = c.period.x, py = c.period.y, half_x = half(px), half_y = half(py);
+  for (int k = 0; k < width; ++k) {
+    double dx = a.x[k] - b.x[k], dy = a.y[k] - b.y[k];
+    const double dz = a.z[k] - b.z[k];
+    if (grain) {
+      dx -= dx > half_x ? px : 0.0;
+      dx += dx < -half_x ? px : 0.0;
+      dy -= dy > half_y ? py : 0.0;
+      dy += dy < -half_y ? py : 0.0;
+    }
     const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
     const double inverse = 1.0 / distance;
     const double nx = dx * inverse, ny = dy * inverse, nz = dz * inverse;
-    const double ri = c.radius_i[i], rj = c.radius_j[i];
+    const double ri = a.radius[k], rj = b.radius[k];
     const double gap = ri + rj - distance;
     const double overlap = gap > 0.0 ? gap : 0.0;
     const double arm_i = ri - share_i * overlap;
-    const double arm_j = distance - arm_i;
-    const double wxi = c.spin_i_x[i], wyi = c.spin_i_y[i], wzi = c.spin_i_z[i];
-    const double wxj = c.spin_j_x[i], wyj = c.spin_j_y[i], wzj = c.spin_j_z[i];
+    const double arm_j = grain ? distance - arm_i : 0.0;
     // Surface velocity of i over j: u - (arm_i w_i + arm_j w_j) x n; a wall's own motion is in u.
-    const double reach_j = partner == Partner::grain ? arm_j : 0.0;
-    const double wx = arm_i * wxi + reach_j * wxj;
-    const double wy = arm_i * wyi + reach_j * wyj;
-    const double wz = arm_i * wzi + reach_j * wzj;
-    const double ux = c.slip_x[i] - (wy * nz - wz * ny);
-    const double uy = c.slip_y[i] - (wz * nx - wx * nz);
-    const double uz = c.slip_z[i] - (wx * ny - wy * nx);
+    const double wx = arm_i * a.wx[k] + arm_j * b.wx[k];
+    const double wy = arm_i * a.wy[k] + arm_j * b.wy[k];
+    const double wz = arm_i * a.wz[k] + arm_j * b.wz[k];
+    const double ux = (a.vx[k] - b.vx[k]) - (wy * nz - wz * ny);
+    const double uy = (a.vy[k] - b.vy[k]) - (wz * nx - wx * nz);
+    const double uz = (a.vz[k] - b.vz[k]) - (wx * ny - wy * nx);
     const double un = ux * nx + uy * ny + uz * nz;
-    const double rx = wxi - wxj, ry = wyi - wyj, rz = wzi - wzj;
+    const double rx = a.wx[k] - b.wx[k], ry = a.wy[k] - b.wy[k], rz = a.wz[k] - b.wz[k];
     const double twist = rx * nx + ry * ny + rz * nz;
-    c.normal_x[i] = nx;
-    c.normal_y[i] = ny;
-    c.normal_z[i] = nz;
-    c.overlap[i] = overlap;
-    c.radius[i] = partner == Partner::grain ? ri * rj / (ri + rj) : ri;
-    c.mass[i] = 1.0 / (c.inverse_mass_i[i] + c.inverse_mass_j[i]);
-    c.arm_i[i] = arm_i;
-    c.arm_j[i] = reach_j;
-    c.approach[i] = -un;
-    c.slip_x[i] = ux - un * nx;
-    c.slip_y[i] = uy - un * ny;
-    c.slip_z[i] = uz - un * nz;
-    c.roll_x[i] = rx - twist * nx;
-    c.roll_y[i] = ry - twist * ny;
-    c.roll_z[i] = rz - twist * nz;
+    c.normal_x[k] = nx;
+    c.normal_y[k] = ny;
+    c.normal_z[k] = nz;
+    c.overlap[k] = overlap;
+    c.radius[k] = grain ? ri * rj / (ri + rj) : ri;
+    c.mass[k] = 1.0 / (a.inverse_mass[k] + b.inverse_mass[k]);
+    c.arm_i[k] = arm_i;
+    c.arm_j[k] = arm_j;
+    c.approach[k] = -un;
+    c.slip_x[k] = ux - un * nx;
+    c.slip_y[k] = uy - un * ny;
+    c.slip_z[k] = uz - un * nz;
+    c.roll_x[k] = rx - twist * nx;
+    c.roll_y[k] = ry - twist * ny;
+    c.roll_z[k] = rz - twist * nz;
   }
 }
 
@@ -89,15 +95,19 @@ template <Partner partner>
     const double f = c.normal_force[i], arm_i = c.arm_i[i], arm_j = c.arm_j[i];
     const double mx = ny * tz - nz * ty, my = nz * tx - nx * tz, mz = nx * ty - ny * tx;
     const double cx = c.couple_x[i], cy = c.couple_y[i], cz = c.couple_z[i];
-    c.force_x[i] = f * nx + tx;
-    c.force_y[i] = f * ny + ty;
-    c.force_z[i] = f * nz + tz;
-    c.torque_i_x[i] = cx - arm_i * mx;
-    c.torque_i_y[i] = cy - arm_i * my;
-    c.torque_i_z[i] = cz - arm_i * mz;
-    c.torque_j_x[i] = -cx - arm_j * mx;
-    c.torque_j_y[i] = -cy - arm_j * my;
-    c.torque_j_z[i] = -cz - arm_j * mz;
+    const double fx = f * nx + tx, fy = f * ny + ty, fz = f * nz + tz;
+    c.load_i.fx[i] = fx;
+    c.load_i.fy[i] = fy;
+    c.load_i.fz[i] = fz;
+    c.load_i.tx[i] = cx - arm_i * mx;
+    c.load_i.ty[i] = cy - arm_i * my;
+    c.load_i.tz[i] = cz - arm_i * mz;
+    c.load_j.fx[i] = -fx;
+    c.load_j.fy[i] = -fy;
+    c.load_j.fz[i] = -fz;
+    c.load_j.tx[i] = -cx - arm_j * mx;
+    c.load_j.ty[i] = -cy - arm_j * my;
+    c.load_j.tz[i] = -cz - arm_j * mz;
   }
 }
 

@@ -23,7 +23,7 @@ struct alignas(32) GrainRow {
   [[nodiscard]] Vec3 spin() const { return {wx, wy, wz}; }
 };
 
-/// Force and torque on one grain during a step.
+/// Force and torque on one grain during a step: one cache line.
 struct alignas(64) GrainLoad {
   double fx = 0.0, fy = 0.0, fz = 0.0;  ///< N
   double tx = 0.0, ty = 0.0, tz = 0.0;  ///< N m

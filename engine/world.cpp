@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/any_machine.hpp"
+#include "engine/quad.hpp"
+
 namespace repose::engine {
 
 namespace {
@@ -50,45 +53,122 @@ void scatter_history(Candidates& c, int columns, std::uint32_t k, int lane, cons
   for (; q < columns; ++q) scatter_columns<1>(to + q, lane, from + q * width);
 }
 
-/// Lanes past the last contact: two equal spheres that just touch, at rest.
-void fill_idle_lanes(ContactBlock& c, int columns, double* history) {
-  for (int lane = c.count; lane < width; ++lane) {
-    c.normal_x[lane] = 1.0;
-    c.normal_y[lane] = c.normal_z[lane] = 0.0;
-    c.radius_i[lane] = c.radius_j[lane] = 0.5;
-    c.inverse_mass_i[lane] = c.inverse_mass_j[lane] = 1.0;
-    c.slip_x[lane] = c.slip_y[lane] = c.slip_z[lane] = 0.0;
-    c.spin_i_x[lane] = c.spin_i_y[lane] = c.spin_i_z[lane] = 0.0;
-    c.spin_j_x[lane] = c.spin_j_y[lane] = c.spin_j_z[lane] = 0.0;
-    for (int q = 0; q < columns; ++q) history[q * width + lane] = 0.0;
+/// History of lanes that no contact uses.
+void clear_idle_lanes(int count, int columns, double* history) {
+  for (int q = 0; q < columns && count < width; ++q) {
+    std::fill(history + q * width + count, history + (q + 1) * width, 0.0);
   }
 }
 
-void gather_end_i(ContactBlock& c, int lane, const GrainRow& a) {
-  c.radius_i[lane] = a.radius;
-  c.inverse_mass_i[lane] = a.inverse_mass;
-  c.spin_i_x[lane] = a.wx;
-  c.spin_i_y[lane] = a.wy;
-  c.spin_i_z[lane] = a.wz;
+constexpr int quad = 4;
+static_assert(sizeof(GrainRow) == 12 * sizeof(double) && width % quad == 0);
+
+/// What stands in the lanes past the last contact: two equal spheres that just touch, at rest.
+constexpr GrainRow idle_i{.z = 1.0, .radius = 0.5, .inverse_mass = 1.0};
+constexpr GrainRow idle_j{.radius = 0.5, .inverse_mass = 1.0};
+
+/// Four rows to four lanes of the columns of an end.
+[[gnu::always_inline]] inline void to_lanes(const std::array<const GrainRow*, quad>& rows,
+                                            ContactBlock::End& end,
+                                            int lane) {
+  const std::array columns{&end.x, &end.vx, &end.wx};
+  const std::array firsts{&GrainRow::x, &GrainRow::vx, &GrainRow::wx};
+  for (std::size_t part = 0; part < columns.size(); ++part) {
+    Quad a = load_quad(&(rows[0]->*firsts[part]));
+    Quad b = load_quad(&(rows[1]->*firsts[part]));
+    Quad c = load_quad(&(rows[2]->*firsts[part]));
+    Quad d = load_quad(&(rows[3]->*firsts[part]));
+    transpose(a, b, c, d);
+    double* const to = columns[part]->data() + lane;
+    store_quad(to, a);
+    store_quad(to + width, b);
+    store_quad(to + 2 * width, c);
+    store_quad(to + 3 * width, d);
+  }
 }
 
-/// Adds a lane's force and torque to the grain at end i.
-void load_end_i(const ContactBlock& c, int lane, GrainLoad& load) {
-  load.fx += c.force_x[lane];
-  load.fy += c.force_y[lane];
-  load.fz += c.force_z[lane];
-  load.tx += c.torque_i_x[lane];
-  load.ty += c.torque_i_y[lane];
-  load.tz += c.torque_i_z[lane];
+/// Copies the rows at both ends of a block's pairs to its columns.
+REPOSE_ANY_MACHINE
+void gather_ends(ContactBlock& c,
+                 const std::uint32_t* block,
+                 const Candidates& p,
+                 const GrainRow* rows) {
+  for (int lane = 0; lane < width; lane += quad) {
+    std::array<const GrainRow*, quad> i{};
+    std::array<const GrainRow*, quad> j{};
+    for (int q = 0; q < quad; ++q) {
+      const bool idle = lane + q >= c.count;
+      const std::uint32_t k = idle ? 0 : block[lane + q];
+      i[static_cast<std::size_t>(q)] = idle ? &idle_i : rows + p.i[k];
+      j[static_cast<std::size_t>(q)] = idle ? &idle_j : rows + p.j[k];
+    }
+    to_lanes(i, c.i, lane);
+    to_lanes(j, c.j, lane);
+  }
 }
 
-void load_end_j(const ContactBlock& c, int lane, GrainLoad& load) {
-  load.fx -= c.force_x[lane];
-  load.fy -= c.force_y[lane];
-  load.fz -= c.force_z[lane];
-  load.tx += c.torque_j_x[lane];
-  load.ty += c.torque_j_y[lane];
-  load.tz += c.torque_j_z[lane];
+/// A point of a wall as the other end of a contact: no size, no spin, no give.
+[[gnu::always_inline]] inline void set_wall_end(ContactBlock::End& end,
+                                                int lane,
+                                                const Vec3& point,
+                                                const Vec3& velocity) {
+  end.x[lane] = point.x;
+  end.y[lane] = point.y;
+  end.z[lane] = point.z;
+  end.vx[lane] = velocity.x;
+  end.vy[lane] = velocity.y;
+  end.vz[lane] = velocity.z;
+}
+
+/// What all ends at walls share, and the idle lanes' partner.
+void clear_wall_ends(ContactBlock::End& end, int count) {
+  for (auto* column :
+       {&end.x, &end.y, &end.z, &end.vx, &end.vy, &end.vz, &end.wx, &end.wy, &end.wz}) {
+    column->fill(0.0);
+  }
+  for (int lane = 0; lane < width; ++lane) {
+    end.radius[lane] = lane < count ? 0.0 : idle_j.radius;
+    end.inverse_mass[lane] = lane < count ? 0.0 : idle_j.inverse_mass;
+  }
+}
+
+/// Adds four lanes of loads to the grains they belong to.
+[[gnu::always_inline]] inline void from_lanes(const ContactBlock::Load& load,
+                                              int lane,
+                                              std::array<Quad, quad>& force,
+                                              std::array<Quad, quad>& torque) {
+  const double* const from = load.fx.data() + lane;
+  for (int q = 0; q < quad; ++q) force[static_cast<std::size_t>(q)] = load_quad(from + q * width);
+  torque[0] = load_quad(from + 4 * width);
+  torque[1] = load_quad(from + 5 * width);
+  torque[2] = torque[3] = Quad{0.0, 0.0, 0.0, 0.0};
+  transpose(force[0], force[1], force[2], force[3]);
+  transpose(torque[0], torque[1], torque[2], torque[3]);
+}
+
+[[gnu::always_inline]] inline void receive(GrainLoad& load, const Quad& first, const Quad& second) {
+  store_quad(&load.fx, load_quad(&load.fx) + first);
+  store_quad(&load.ty, load_quad(&load.ty) + second);
+}
+
+/// Adds a block's loads to the grains at both ends, in the order of the contacts.
+REPOSE_ANY_MACHINE
+void scatter_loads(const ContactBlock& c,
+                   const std::uint32_t* block,
+                   const Candidates& p,
+                   GrainLoad* loads) {
+  std::array<Quad, quad> force_i{}, torque_i{}, force_j{}, torque_j{};
+  for (int lane = 0; lane < c.count; lane += quad) {
+    from_lanes(c.load_i, lane, force_i, torque_i);
+    from_lanes(c.load_j, lane, force_j, torque_j);
+    const int lanes = std::min(quad, c.count - lane);
+    for (int q = 0; q < lanes; ++q) {
+      const std::uint32_t k = block[lane + q];
+      const auto n = static_cast<std::size_t>(q);
+      receive(loads[p.i[k]], force_i[n], torque_i[n]);
+      receive(loads[p.j[k]], force_j[n], torque_j[n]);
+    }
+  }
 }
 
 /// Forgets the contact of a candidate that has opened.
@@ -112,7 +192,8 @@ World::World(ContactModel model, const WorldOptions& options)
     : model_(std::move(model)),
       options_(options),
       gravity_(options.gravity),
-      list_(model_.history_columns()) {}
+      list_(model_.history_columns()),
+      block_(std::make_unique<ContactBlock>()) {}
 
 std::uint32_t World::add(const GrainRow& grain) {
   const auto id = static_cast<std::uint32_t>(inserted_++);
@@ -198,7 +279,7 @@ void World::find_closed_walls() {
     const Vec3 d = offset_from(surface, a.centre());
     const double squared = dot(d, d);
     if (squared < a.radius * a.radius && squared > 0.0) {
-      closed_walls_[static_cast<std::size_t>(surface.material)].push_back(k);
+      closed_walls_[static_cast<std::size_t>(surface.material)].push_back({k, d});
       ++closed_;
     } else if (w.closed[k] != 0) {
       open(w, list_.history_columns(), k);
@@ -210,41 +291,22 @@ void World::push_pairs() {
   Candidates& p = list_.pairs;
   const PairLaw& law = model_.law(MaterialId::grain);
   const int columns = list_.history_columns();
-  const Vec3 period = options_.period;
-  const double half_x = half(period.x), half_y = half(period.y);
-  alignas(64) ContactBlock c;
+  ContactBlock& c = *block_;
+  c.period = {options_.period.x, options_.period.y};
   alignas(64) std::array<double, width * most_history_columns> history;
-  const GrainRow* const rows = grains_.rows.data();
-  GrainLoad* const loads = grains_.loads.data();
   for (std::size_t first = 0; first < closed_pairs_.size(); first += width) {
     c.count = static_cast<int>(std::min<std::size_t>(width, closed_pairs_.size() - first));
     const std::uint32_t* const block = closed_pairs_.data() + first;
+    gather_ends(c, block, p, grains_.rows.data());
     for (int lane = 0; lane < c.count; ++lane) {
-      const std::uint32_t k = block[lane];
-      const GrainRow& a = rows[p.i[k]];
-      const GrainRow& b = rows[p.j[k]];
-      c.normal_x[lane] = image(a.x - b.x, period.x, half_x);
-      c.normal_y[lane] = image(a.y - b.y, period.y, half_y);
-      c.normal_z[lane] = a.z - b.z;
-      c.slip_x[lane] = a.vx - b.vx;
-      c.slip_y[lane] = a.vy - b.vy;
-      c.slip_z[lane] = a.vz - b.vz;
-      gather_end_i(c, lane, a);
-      c.radius_j[lane] = b.radius;
-      c.inverse_mass_j[lane] = b.inverse_mass;
-      c.spin_j_x[lane] = b.wx;
-      c.spin_j_y[lane] = b.wy;
-      c.spin_j_z[lane] = b.wz;
-      gather_history(p, columns, k, lane, history.data());
+      gather_history(p, columns, block[lane], lane, history.data());
     }
-    if (c.count < width) fill_idle_lanes(c, columns, history.data());
+    clear_idle_lanes(c.count, columns, history.data());
     apply(law, Partner::grain, c, HistoryBlock(history.data()), options_.time_step);
+    scatter_loads(c, block, p, grains_.loads.data());
     for (int lane = 0; lane < c.count; ++lane) {
-      const std::uint32_t k = block[lane];
-      load_end_i(c, lane, loads[p.i[k]]);
-      load_end_j(c, lane, loads[p.j[k]]);
-      p.closed[k] = 1;
-      scatter_history(p, columns, k, lane, history.data());
+      p.closed[block[lane]] = 1;
+      scatter_history(p, columns, block[lane], lane, history.data());
     }
   }
 }
@@ -252,34 +314,43 @@ void World::push_pairs() {
 void World::push_walls() {
   Candidates& w = list_.walls;
   const int columns = list_.history_columns();
-  alignas(64) ContactBlock c;
+  ContactBlock& c = *block_;
   alignas(64) std::array<double, width * most_history_columns> history;
   for (std::size_t material = 0; material < closed_walls_.size(); ++material) {
     const PairLaw& law = model_.law(static_cast<MaterialId>(material));
-    const std::vector<std::uint32_t>& closed = closed_walls_[material];
+    const std::vector<ClosedWall>& closed = closed_walls_[material];
     for (std::size_t first = 0; first < closed.size(); first += width) {
       c.count = static_cast<int>(std::min<std::size_t>(width, closed.size() - first));
-      for (int lane = 0; lane < c.count; ++lane) {
-        const std::uint32_t k = closed[first + static_cast<std::size_t>(lane)];
-        const GrainRow& a = grains_.rows[w.i[k]];
-        const Surface& surface = surfaces_[w.j[k]];
-        const Vec3 d = offset_from(surface, a.centre());
-        c.normal_x[lane] = d.x;
-        c.normal_y[lane] = d.y;
-        c.normal_z[lane] = d.z;
-        c.slip_x[lane] = a.vx - surface.velocity.x;
-        c.slip_y[lane] = a.vy - surface.velocity.y;
-        c.slip_z[lane] = a.vz - surface.velocity.z;
-        gather_end_i(c, lane, a);
-        c.radius_j[lane] = c.inverse_mass_j[lane] = 0.0;
-        c.spin_j_x[lane] = c.spin_j_y[lane] = c.spin_j_z[lane] = 0.0;
-        gather_history(w, columns, k, lane, history.data());
+      const ClosedWall* const block = closed.data() + first;
+      for (int lane = 0; lane < width; lane += quad) {
+        std::array<const GrainRow*, quad> rows{};
+        for (int q = 0; q < quad; ++q) {
+          const bool idle = lane + q >= c.count;
+          rows[static_cast<std::size_t>(q)] =
+              idle ? &idle_i : &grains_.rows[w.i[block[lane + q].candidate]];
+        }
+        to_lanes(rows, c.i, lane);
       }
-      if (c.count < width) fill_idle_lanes(c, columns, history.data());
+      clear_wall_ends(c.j, c.count);
+      for (int lane = 0; lane < c.count; ++lane) {
+        const std::uint32_t k = block[lane].candidate;
+        const Vec3 point = grains_.rows[w.i[k]].centre() - block[lane].offset;
+        set_wall_end(c.j, lane, point, surfaces_[w.j[k]].velocity);
+      }
+      for (int lane = 0; lane < c.count; ++lane) {
+        gather_history(w, columns, block[lane].candidate, lane, history.data());
+      }
+      clear_idle_lanes(c.count, columns, history.data());
       apply(law, Partner::wall, c, HistoryBlock(history.data()), options_.time_step);
       for (int lane = 0; lane < c.count; ++lane) {
-        const std::uint32_t k = closed[first + static_cast<std::size_t>(lane)];
-        load_end_i(c, lane, grains_.loads[w.i[k]]);
+        const std::uint32_t k = block[lane].candidate;
+        GrainLoad& load = grains_.loads[w.i[k]];
+        load.fx += c.load_i.fx[lane];
+        load.fy += c.load_i.fy[lane];
+        load.fz += c.load_i.fz[lane];
+        load.tx += c.load_i.tx[lane];
+        load.ty += c.load_i.ty[lane];
+        load.tz += c.load_i.tz[lane];
         w.closed[k] = 1;
         scatter_history(w, columns, k, lane, history.data());
       }

@@ -70,6 +70,12 @@ class World {
   [[nodiscard]] double bytes_per_grain() const;
 
  private:
+  /// A wall candidate that touches, and the way from the wall to the grain's centre.
+  struct ClosedWall {
+    std::uint32_t candidate;
+    Vec3 offset;
+  };
+
   void rebuild();
   void find_closed_pairs();
   void find_closed_walls();
@@ -85,9 +91,10 @@ class World {
   Grains grains_;
   std::vector<Surface> surfaces_;
   ContactList list_;
-  std::vector<std::uint32_t> closed_pairs_;                 ///< candidates that touch now
-  std::array<std::vector<std::uint32_t>, 2> closed_walls_;  ///< the same by the wall's material
-  bool stale_ = true;                                       ///< the list must be made anew
+  std::vector<std::uint32_t> closed_pairs_;              ///< candidates that touch now
+  std::array<std::vector<ClosedWall>, 2> closed_walls_;  ///< the same by the wall's material
+  std::unique_ptr<ContactBlock> block_;
+  bool stale_ = true;  ///< the list must be made anew
   double time_ = 0.0;
   std::uint64_t steps_ = 0;
   std::uint64_t grain_steps_ = 0;

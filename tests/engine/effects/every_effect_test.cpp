@@ -72,20 +72,19 @@ void apply_to_random(const ParameterSet& set, Partner partner, ContactBlock& c) 
   Random random(11, Purpose::grain_velocity);
   for (int lane = 0; lane < ContactBlock::width; ++lane) {
     const auto any = [&random](double size) { return random.uniform(-size, size); };
+    const bool grain = partner == Partner::grain;
     const Vec3 n{any(1), any(1), any(1)};
-    c.radius_i[lane] = random.uniform(1e-3, 3e-3);
-    c.radius_j[lane] = partner == Partner::grain ? random.uniform(1e-3, 3e-3) : 0.0;
-    const double d = (c.radius_i[lane] + c.radius_j[lane]) * random.uniform(0.9, 0.999) / norm(n);
-    c.normal_x[lane] = d * n.x;
-    c.normal_y[lane] = d * n.y;
-    c.normal_z[lane] = d * n.z;
-    c.inverse_mass_i[lane] = random.uniform(1e3, 1e4);
-    c.inverse_mass_j[lane] = partner == Partner::grain ? random.uniform(1e3, 1e4) : 0.0;
-    for (auto* column : {&c.slip_x, &c.slip_y, &c.slip_z}) (*column)[lane] = any(0.5);
-    for (auto* column : {&c.spin_i_x, &c.spin_i_y, &c.spin_i_z}) (*column)[lane] = any(50);
-    for (auto* column : {&c.spin_j_x, &c.spin_j_y, &c.spin_j_z}) {
-      (*column)[lane] = partner == Partner::grain ? any(50) : 0.0;
-    }
+    c.i.radius[lane] = random.uniform(1e-3, 3e-3);
+    c.j.radius[lane] = grain ? random.uniform(1e-3, 3e-3) : 0.0;
+    const double d = (c.i.radius[lane] + c.j.radius[lane]) * random.uniform(0.9, 0.999) / norm(n);
+    c.i.x[lane] = d * n.x;
+    c.i.y[lane] = d * n.y;
+    c.i.z[lane] = d * n.z;
+    c.i.inverse_mass[lane] = random.uniform(1e3, 1e4);
+    c.j.inverse_mass[lane] = grain ? random.uniform(1e3, 1e4) : 0.0;
+    for (auto* column : {&c.i.vx, &c.i.vy, &c.i.vz}) (*column)[lane] = any(0.5);
+    for (auto* column : {&c.i.wx, &c.i.wy, &c.i.wz}) (*column)[lane] = any(50);
+    for (auto* column : {&c.j.wx, &c.j.wy, &c.j.wz}) (*column)[lane] = grain ? any(50) : 0.0;
   }
   c.count = ContactBlock::width;
   std::array<double, ContactBlock::width * most_history_columns> history{};
@@ -121,10 +120,10 @@ TEST_CASE("torques about the contact point balance under every effect", "[engine
     for (int i = 0; i < ContactBlock::width; ++i) {
       // Angular momentum about centre j: torque i + torque j + (arm_i + arm_j) n x F = 0.
       const Vec3 n{c.normal_x[i], c.normal_y[i], c.normal_z[i]};
-      const Vec3 force{c.force_x[i], c.force_y[i], c.force_z[i]};
-      const Vec3 sum = Vec3{c.torque_i_x[i] + c.torque_j_x[i],
-                            c.torque_i_y[i] + c.torque_j_y[i],
-                            c.torque_i_z[i] + c.torque_j_z[i]} +
+      const Vec3 force{c.load_i.fx[i], c.load_i.fy[i], c.load_i.fz[i]};
+      const Vec3 sum = Vec3{c.load_i.tx[i] + c.load_j.tx[i],
+                            c.load_i.ty[i] + c.load_j.ty[i],
+                            c.load_i.tz[i] + c.load_j.tz[i]} +
                        (c.arm_i[i] + c.arm_j[i]) * cross(n, force);
       CHECK(norm(sum) <= 1e-12 * (norm(force) * c.arm_i[i] + 1e-30));
     }
