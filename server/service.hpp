@@ -1,5 +1,5 @@
-/// Service: the use cases. No HTTP words, no SQL words: documents in, documents (JSON text) out. The
-/// command line and the HTTP API call the same functions.
+/// Service: the use cases. No HTTP words, no SQL words: documents in, documents (JSON text) out.
+/// The command line and the HTTP API call the same functions.
 #pragma once
 
 #include <cstdint>
@@ -31,10 +31,11 @@ using Answer = engine::Result<T, Refusal>;
 struct ServiceOptions {
   std::filesystem::path database;  ///< the file; made when missing
   unsigned workers = 0;            ///< evaluations at once; 0: one per core
-  /// Program started as `PROGRAM answer` for each evaluation, question on its standard input, answer on
-  /// its standard output. Empty: evaluations run in this process (tests).
+  /// Program started as `PROGRAM answer` for each evaluation, question on its standard input,
+  /// answer on its standard output. Empty: evaluations run in this process (tests).
   std::filesystem::path program;
   double evaluation_time_limit = 3600.0;  ///< s of wall time
+  bool read_only = false;                 ///< look only: works while another process writes
   bool run_jobs = false;                  ///< start the queued calibrations in the background
 };
 
@@ -47,7 +48,8 @@ struct CalibrationEvents {
 
 class Service {
  public:
-  /// Opens or makes the database, takes its lock, migrates it. Throws db::Error with a clear message.
+  /// Opens or makes the database, takes its lock, migrates it. Throws db::Error with a clear
+  /// message.
   explicit Service(const ServiceOptions& options);
   ~Service();
   Service(const Service&) = delete;
@@ -56,8 +58,8 @@ class Service {
   /// Queues a calibration; the answer is its document (id, state, ...).
   Answer<std::string> submit(std::string_view study);
 
-  /// Runs a calibration here and now (or takes up an unfinished one with the same study); the answer
-  /// is its document.
+  /// Runs a calibration here and now (or takes up an unfinished one with the same study); the
+  /// answer is its document.
   Answer<std::string> calibrate(std::string_view study,
                                 std::stop_token stop,
                                 const CalibrationEvents& events);
@@ -70,8 +72,8 @@ class Service {
   [[nodiscard]] Answer<std::string> evaluations(std::int64_t calibration,
                                                 int limit,
                                                 std::optional<std::int64_t> after) const;
-  /// {"items":[{"calibration","name","material","misfit","best",...}]}: the best finished fit of every
-  /// study name, or of one.
+  /// {"items":[{"calibration","name","material","misfit","best",...}]}: the best finished fit of
+  /// every study name, or of one.
   [[nodiscard]] std::string best_fits(std::optional<std::string> name) const;
   Answer<std::string> cancel(std::int64_t id);
 

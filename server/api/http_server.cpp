@@ -47,7 +47,7 @@ Request request_of(const httplib::Request& request) {
           .body = request.body};
 }
 
-void send(Reply reply, httplib::Response& response) {
+void send(const Reply& reply, httplib::Response& response) {
   response.status = reply.status;
   for (const auto& [name, value] : reply.headers) response.set_header(name, value);
   response.set_content(reply.body, reply.content_type);
@@ -56,7 +56,7 @@ void send(Reply reply, httplib::Response& response) {
 /// Answers and closes the connection. The library closes it only where writing fails: so the body
 /// is written, and then said to have failed. What is left of the request is thus never read as the
 /// next one.
-void send_and_close(Reply reply, httplib::Request& request, httplib::Response& response) {
+void send_and_close(const Reply& reply, httplib::Request& request, httplib::Response& response) {
   response.status = reply.status;
   response.set_header("Connection", "close");
   response.set_content_provider(

@@ -29,6 +29,7 @@ std::optional<std::string> find(std::int64_t id, const std::filesystem::path& da
   if (!database_is_there(database)) return std::nullopt;
   ServiceOptions options;
   options.database = database;
+  options.read_only = true;
   const Service service(options);
   auto answer = service.calibration(id);
   if (answer) return *std::move(answer);
@@ -67,6 +68,7 @@ int list_command(const ListCommand& command) {
   if (!database_is_there(command.database)) return exit_code::misused;
   ServiceOptions options;
   options.database = command.database;
+  options.read_only = true;
   const Service service(options);
   const std::string text = service.calibrations(command.limit, std::nullopt);
   if (command.form == Form::json) {

@@ -148,22 +148,6 @@ engine::Outcome read_outcome(const Json& json) {
   return observations;
 }
 
-/// SHA-256 (FIPS 180-4), hexadecimal.
-std::string sha256(std::string_view text) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  if (EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("OpenSSL cannot compute SHA-256");
-  }
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string result;
-  for (unsigned int i = 0; i < size; ++i) {
-    result += digits[digest.at(i) >> 4U];
-    result += digits[digest.at(i) & 0xFU];
-  }
-  return result;
-}
-
 }  // namespace
 
 std::string print_trial(const Trial& trial) {
@@ -215,8 +199,23 @@ engine::Result<Trial, Problems> parse_trial(std::string_view text) {
   return trial;
 }
 
+std::string digest(std::string_view text) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> bytes{};
+  unsigned int size = 0;
+  if (EVP_Digest(text.data(), text.size(), bytes.data(), &size, EVP_sha256(), nullptr) != 1) {
+    throw std::runtime_error("OpenSSL cannot compute SHA-256");
+  }
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string result;
+  for (unsigned int i = 0; i < size; ++i) {
+    result += digits[bytes.at(i) >> 4U];
+    result += digits[bytes.at(i) & 0xFU];
+  }
+  return result;
+}
+
 std::string evaluation_key(const Trial& trial) {
-  return sha256(std::string(engine::version()) + "\n" + print_trial(trial));
+  return digest(std::string(engine::version()) + "\n" + print_trial(trial));
 }
 
 std::string print_answer(const Evaluation& evaluation) {

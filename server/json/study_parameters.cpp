@@ -13,7 +13,6 @@ namespace repose::server {
 
 using engine::FieldInfo;
 using engine::MaterialId;
-using engine::ParameterKey;
 
 namespace {
 

@@ -1,0 +1,45 @@
+#include "server/jobs/scheduler.hpp"
+
+#include <utility>
+
+namespace repose::server {
+
+Scheduler::Scheduler(Job job)
+    : job_(std::move(job)), thread_([this](const std::stop_token& stop) { obey(stop); }) {}
+
+Scheduler::~Scheduler() {
+  thread_.request_stop();
+  const std::scoped_lock hold(mutex_);
+  running_.request_stop();
+}
+
+void Scheduler::submit(std::int64_t id) {
+  {
+    const std::scoped_lock hold(mutex_);
+    schedule_.submit(id);
+  }
+  changed_.notify_all();
+}
+
+Schedule::Cancelled Scheduler::cancel(std::int64_t id) {
+  const std::scoped_lock hold(mutex_);
+  const Schedule::Cancelled result = schedule_.cancel(id);
+  if (result == Schedule::Cancelled::running) running_.request_stop();
+  return result;
+}
+
+void Scheduler::obey(const std::stop_token& stop) {
+  std::unique_lock hold(mutex_);
+  while (changed_.wait(hold, stop, [this] { return schedule_.ready(); })) {
+    if (stop.stop_requested()) return;
+    const auto id = schedule_.next();
+    running_ = std::stop_source();
+    const std::stop_token token = running_.get_token();
+    hold.unlock();
+    job_(*id, token);
+    hold.lock();
+    schedule_.finished();
+  }
+}
+
+}  // namespace repose::server

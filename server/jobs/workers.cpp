@@ -1,0 +1,187 @@
+#include "server/jobs/workers.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include "engine/evaluate.hpp"
+#include "server/jobs/child.hpp"
+#include "server/jobs/clock.hpp"
+#include "server/json/evaluation_json.hpp"
+
+namespace repose::server {
+
+using engine::Evaluation;
+using engine::Failure;
+using engine::FailureKind;
+using engine::Trial;
+
+/// One question of a batch and the places that asked it.
+struct Workers::Task {
+  const Trial* trial;
+  std::string key;
+  std::string answer;  ///< document; empty until there is one
+  bool stored = false;
+};
+
+namespace {
+
+/// A failure of the host, as an answer's document.
+std::string host_failure(const Trial& trial, FailureKind kind, const std::string& message) {
+  return print_answer({trial, Failure{kind, message, 0.0}, {}});
+}
+
+/// Answers that are not the engine's but the host's: not to be kept.
+bool is_of_the_host(const Evaluation& evaluation) {
+  const auto* failure = std::get_if<Failure>(&evaluation.outcome);
+  if (failure == nullptr) return false;
+  return failure->kind == FailureKind::cancelled || failure->kind == FailureKind::timed_out ||
+         failure->kind == FailureKind::crashed;
+}
+
+bool is_cancelled(const Evaluation& evaluation) {
+  const auto* failure = std::get_if<Failure>(&evaluation.outcome);
+  return failure != nullptr && failure->kind == FailureKind::cancelled;
+}
+
+std::string class_of(const engine::Experiment& experiment) {
+  return experiment.name + "/" +
+         std::string(engine::fidelity_names[static_cast<std::size_t>(experiment.fidelity)]);
+}
+
+}  // namespace
+
+Workers::Workers(db::Store& store, const WorkerOptions& options)
+    : store_(store), options_(options) {
+  if (options_.workers == 0) options_.workers = std::max(1U, std::thread::hardware_concurrency());
+}
+
+void Workers::remember(const engine::Experiment& experiment, double seconds) {
+  const std::scoped_lock hold(mutex_);
+  seconds_[class_of(experiment)] = seconds;
+}
+
+/// The order of starting: what took longest last time first, the unknown before the known.
+std::vector<std::size_t> Workers::longest_first(const std::vector<Task>& tasks) const {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (!tasks[i].stored) order.push_back(i);
+  }
+  const auto seconds = [&](std::size_t i) {
+    const auto found = seconds_.find(class_of(tasks[i].trial->experiment));
+    return found == seconds_.end() ? std::numeric_limits<double>::infinity() : found->second;
+  };
+  std::ranges::stable_sort(order, std::greater{}, seconds);
+  return order;
+}
+
+/// Runs the trial wherever trials are run; the answer's document.
+std::string Workers::ask(const Trial& trial, const std::stop_token& stop) const {
+  if (stop.stop_requested()) return host_failure(trial, FailureKind::cancelled, "asked to stop");
+  if (options_.program.empty()) {
+    return print_answer(engine::evaluate(trial, {.stop = stop}));
+  }
+  std::string account;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const ChildResult child =
+        run_child(options_.program, print_trial(trial) + "\n", options_.time_limit, stop);
+    account = child.account;
+    using End = ChildResult::End;
+    if (child.end == End::cancelled) {
+      return host_failure(trial, FailureKind::cancelled, "asked to stop");
+    }
+    if (child.end == End::timed_out) {
+      return host_failure(
+          trial,
+          FailureKind::timed_out,
+          "the evaluation " + account + " of " + std::to_string(options_.time_limit) + " s");
+    }
+    if (child.end == End::exited) {
+      const Evaluation evaluation = parse_answer(trial, child.output);
+      if (!is_of_the_host(evaluation)) return print_answer(evaluation);
+    }
+  }
+  return host_failure(
+      trial, FailureKind::crashed, "the evaluation's process " + account + " without an answer");
+}
+
+void Workers::work(Task& task, const std::stop_token& stop) {
+  const auto start = std::chrono::steady_clock::now();
+  task.answer = ask(*task.trial, stop);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  if (is_of_the_host(parse_answer(*task.trial, task.answer))) return;
+  store_.add_evaluation({.key = task.key,
+                         .question = print_trial(*task.trial),
+                         .answer = task.answer,
+                         .seconds = took.count(),
+                         .engine_version = std::string(engine::version()),
+                         .created_at = microseconds_now()});
+  remember(task.trial->experiment, took.count());
+}
+
+std::vector<Evaluation> Workers::run(std::span<const Trial> trials,
+                                     const std::stop_token& stop,
+                                     const TrialObserver& observer) {
+  std::map<std::string, std::size_t> place;  // of each question among the tasks
+  std::vector<Task> tasks;
+  std::vector<std::size_t> task_of;
+  for (const Trial& trial : trials) {
+    const std::string key = evaluation_key(trial);
+    const auto [found, is_new] = place.try_emplace(key, tasks.size());
+    task_of.push_back(found->second);
+    if (!is_new) continue;
+    Task task{&trial, key, {}, false};
+    if (const auto kept = store_.evaluation(key)) {
+      task.answer = kept->answer;
+      task.stored = true;
+    }
+    tasks.push_back(std::move(task));
+  }
+  std::size_t done = 0;
+  std::exception_ptr problem;
+  const auto tell = [&](bool stored) {
+    const std::scoped_lock hold(mutex_);
+    ++done;
+    if (observer) observer(done, tasks.size(), stored);
+  };
+  for (const Task& task : tasks) {
+    if (task.stored) tell(true);
+  }
+  const std::vector<std::size_t> order = longest_first(tasks);
+  std::atomic<std::size_t> next = 0;
+  const auto serve = [&] {
+    for (std::size_t n = next++; n < order.size(); n = next++) {
+      try {
+        work(tasks[order[n]], stop);
+        tell(false);
+      } catch (...) {
+        const std::scoped_lock hold(mutex_);
+        if (!problem) problem = std::current_exception();
+        next = order.size();
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t t = 0; t < std::min<std::size_t>(options_.workers, order.size()); ++t) {
+      threads.emplace_back(serve);
+    }
+  }
+  if (problem) std::rethrow_exception(problem);
+
+  std::vector<Evaluation> evaluations;
+  used_.clear();
+  interrupted_ = false;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const Task& task = tasks[task_of[i]];
+    evaluations.push_back(parse_answer(trials[i], task.answer));
+    interrupted_ |= is_cancelled(evaluations.back());
+    if (!is_of_the_host(evaluations.back())) used_.push_back(task.key);
+  }
+  return evaluations;
+}
+
+}  // namespace repose::server

@@ -1,0 +1,65 @@
+/// Workers: turns a store and a number of processes into an Evaluator. Each answer is in the store
+/// before anybody sees it; what the store has is not run again.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "db/store.hpp"
+#include "engine/experiment.hpp"
+
+namespace repose::server {
+
+struct WorkerOptions {
+  unsigned workers = 0;           ///< at once; 0: one per core
+  std::filesystem::path program;  ///< empty: evaluations run on threads of this process
+  double time_limit = 3600.0;     ///< s of wall time for one evaluation
+};
+
+class Workers {
+ public:
+  /// After each trial: done and all of the batch, and whether the store had it. Called by one
+  /// thread at a time.
+  using TrialObserver = std::function<void(std::size_t done, std::size_t all, bool stored)>;
+
+  Workers(db::Store& store, const WorkerOptions& options);
+
+  /// The evaluations of a batch in its order. Equal trials run once. A trial whose process crashed
+  /// (twice), ran past the limit or was cancelled is a Failure of that kind; these are no answers,
+  /// so they are not kept: asked again, the trial is run again.
+  std::vector<engine::Evaluation> run(std::span<const engine::Trial> trials,
+                                      const std::stop_token& stop,
+                                      const TrialObserver& observer);
+
+  /// The keys of the last batch's answers that the store has, in order.
+  [[nodiscard]] const std::vector<std::string>& used() const { return used_; }
+  /// Whether any trial of the last batch was cancelled.
+  [[nodiscard]] bool interrupted() const { return interrupted_; }
+
+ private:
+  struct Task;
+
+  std::vector<std::size_t> longest_first(const std::vector<Task>& tasks) const;
+  void work(Task& task, const std::stop_token& stop);
+  [[nodiscard]] std::string ask(const engine::Trial& trial, const std::stop_token& stop) const;
+  void remember(const engine::Experiment& experiment, double seconds);
+
+  db::Store& store_;
+  WorkerOptions options_;
+  mutable std::mutex mutex_;
+  std::map<std::string, double> seconds_;  ///< last wall time by experiment and fidelity
+  std::vector<std::string> used_;
+  bool interrupted_ = false;
+};
+
+}  // namespace repose::server

@@ -1,0 +1,121 @@
+#include "server/json/job_json.hpp"
+
+#include <array>
+#include <cstdio>
+#include <ctime>
+#include <optional>
+
+#include "engine/evaluate.hpp"
+#include "server/json/text.hpp"
+
+namespace repose::server {
+
+namespace {
+
+Json time_or_null(const std::optional<std::int64_t>& time) {
+  return time ? Json(print_time(*time)) : Json(nullptr);
+}
+
+/// A document this program has written, as a value.
+Json document(const std::optional<std::string>& text) {
+  if (!text) return nullptr;
+  return Json::parse(*text, nullptr, false);
+}
+
+Json summary(const db::CalibrationRecord& record) {
+  Json json;
+  json["id"] = record.id;
+  json["name"] = record.name;
+  json["state"] = record.state;
+  json["created_at"] = print_time(record.created_at);
+  json["started_at"] = time_or_null(record.started_at);
+  json["finished_at"] = time_or_null(record.finished_at);
+  json["misfit"] = record.misfit ? number_or_null(*record.misfit) : Json(nullptr);
+  json["progress"] = document(record.progress);
+  json["error"] = record.error ? Json(*record.error) : Json(nullptr);
+  return json;
+}
+
+template <class Items>
+Json page(Json items, const Items& records, int limit, std::int64_t last) {
+  const bool full = records.size() >= static_cast<std::size_t>(limit);
+  Json json;
+  json["items"] = std::move(items);
+  json["next"] = full && !records.empty() ? Json(last) : Json(nullptr);
+  return json;
+}
+
+}  // namespace
+
+std::string print_time(std::int64_t microseconds) {
+  const std::time_t seconds = microseconds / 1'000'000;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 40> text{};
+  const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &utc);
+  std::array<char, 16> fraction{};
+  std::snprintf(
+      fraction.data(), fraction.size(), ".%06dZ", static_cast<int>(microseconds % 1'000'000));
+  return std::string(text.data(), length) + fraction.data();
+}
+
+std::string print_job(const db::CalibrationRecord& record) {
+  Json json = summary(record);
+  json["study"] = document(record.request);
+  json["fit"] = document(record.fit);
+  return to_text(json);
+}
+
+std::string print_jobs(const std::vector<db::CalibrationRecord>& records, int limit) {
+  Json items = Json::array();
+  for (const auto& record : records) items.push_back(summary(record));
+  return to_text(page(std::move(items), records, limit, records.empty() ? 0 : records.back().id));
+}
+
+std::string print_used(const std::vector<db::UsedEvaluation>& used, int limit) {
+  Json items = Json::array();
+  for (const auto& [ordinal, evaluation] : used) {
+    Json item;
+    item["ordinal"] = ordinal;
+    item["key"] = evaluation.key;
+    item["engine_version"] = evaluation.engine_version;
+    item["seconds"] = number_or_null(evaluation.seconds);
+    item["created_at"] = print_time(evaluation.created_at);
+    item["question"] = document(evaluation.question);
+    item["answer"] = document(evaluation.answer);
+    items.push_back(std::move(item));
+  }
+  return to_text(page(std::move(items), used, limit, used.empty() ? 0 : used.back().ordinal));
+}
+
+std::string print_best_fits(const std::vector<db::CalibrationRecord>& records) {
+  Json items = Json::array();
+  for (const auto& record : records) {
+    Json fit = document(record.fit);
+    Json item;
+    item["calibration"] = record.id;
+    item["name"] = record.name;
+    item["misfit"] = record.misfit ? number_or_null(*record.misfit) : Json(nullptr);
+    item["finished_at"] = time_or_null(record.finished_at);
+    item["stop"] = fit.value("stop", Json(nullptr));
+    item["parameters"] = fit.value("parameters", Json::array());
+    item["best"] = fit.value("best", Json(nullptr));
+    items.push_back(std::move(item));
+  }
+  Json json;
+  json["items"] = std::move(items);
+  return to_text(json);
+}
+
+std::string print_health(const std::string& database,
+                         const std::map<std::string, std::int64_t>& jobs) {
+  Json json;
+  json["status"] = "ok";
+  json["database"] = database;
+  json["engine_version"] = engine::version();
+  json["jobs"] = Json::object();
+  for (const auto& [state, count] : jobs) json["jobs"][state] = count;
+  return to_text(json);
+}
+
+}  // namespace repose::server

@@ -1,0 +1,32 @@
+/// Rows of the store -> documents: calibrations, their lists, their evaluations, the service's
+/// health.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "db/record.hpp"
+
+namespace repose::server {
+
+/// {"id","name","state","created_at","started_at","finished_at","study","progress","fit","error"}
+std::string print_job(const db::CalibrationRecord& record);
+
+/// A page of a list: {"items":[...],"next"}; `next` is the cursor of the page after, null at the
+/// end.
+std::string print_jobs(const std::vector<db::CalibrationRecord>& records, int limit);
+
+std::string print_used(const std::vector<db::UsedEvaluation>& used, int limit);
+
+/// {"items":[{"calibration","name","misfit","finished_at","parameters"}]}
+std::string print_best_fits(const std::vector<db::CalibrationRecord>& records);
+
+std::string print_health(const std::string& database,
+                         const std::map<std::string, std::int64_t>& jobs);
+
+/// "2026-11-23T14:05:09.120000Z" from microseconds since 1970.
+std::string print_time(std::int64_t microseconds);
+
+}  // namespace repose::server

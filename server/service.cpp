@@ -1,0 +1,260 @@
+#include "server/service.hpp"
+
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "db/store.hpp"
+#include "server/jobs/clock.hpp"
+#include "server/jobs/scheduler.hpp"
+#include "server/jobs/workers.hpp"
+#include "server/json/calibration_json.hpp"
+#include "server/json/evaluation_json.hpp"
+#include "server/json/fit_json.hpp"
+#include "server/json/job_json.hpp"
+
+namespace repose::server {
+
+using calibrator::Calibration;
+using calibrator::Fit;
+using engine::Unexpected;
+
+namespace {
+
+db::Store open_store(const ServiceOptions& options) {
+  const auto folder = options.database.parent_path();
+  if (!options.read_only && !folder.empty()) {
+    std::error_code problem;
+    std::filesystem::create_directories(folder, problem);
+    if (problem) {
+      throw db::Error(0, "cannot make the folder " + folder.string() + ": " + problem.message());
+    }
+  }
+  return {options.database, options.read_only ? db::Access::read : db::Access::write};
+}
+
+Refusal not_found(std::int64_t id) {
+  return {Refusal::Kind::not_found, "there is no calibration " + std::to_string(id), {}};
+}
+
+/// Lets a progress document through about once a second.
+class Pace {
+ public:
+  bool due() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::seconds(1)) return false;
+    last_ = now;
+    return true;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_{};
+};
+
+}  // namespace
+
+struct Service::State {
+  explicit State(const ServiceOptions& options)
+      : store(open_store(options)),
+        worker_options{.workers = options.workers,
+                       .program = options.program,
+                       .time_limit = options.evaluation_time_limit} {
+    if (options.read_only) return;
+    store.requeue_all();  // what ran when the last process ended runs no more
+    if (!options.run_jobs) return;
+    scheduler = std::make_unique<Scheduler>(
+        [this](std::int64_t id, const std::stop_token& stop) { run_job(id, stop); });
+    for (const std::int64_t id : store.in_state("queued")) scheduler->submit(id);
+  }
+
+  void run_job(std::int64_t id, const std::stop_token& stop);
+  void run(std::int64_t id,
+           const Calibration& calibration,
+           const std::stop_token& stop,
+           const CalibrationEvents& events);
+  void conclude(std::int64_t id, const Calibration& calibration, const Fit& fit);
+  bool take_cancel(std::int64_t id);
+
+  db::Store store;
+  WorkerOptions worker_options;
+  std::mutex mutex;
+  std::set<std::int64_t> cancelled;      ///< running ones that a user has cancelled
+  std::unique_ptr<Scheduler> scheduler;  // last: its thread uses all of the above
+};
+
+bool Service::State::take_cancel(std::int64_t id) {
+  const std::scoped_lock hold(mutex);
+  return cancelled.erase(id) > 0;
+}
+
+void Service::State::conclude(std::int64_t id, const Calibration& calibration, const Fit& fit) {
+  const bool failed = fit.stop == calibrator::StopReason::failed;
+  std::optional<std::string> error;
+  if (failed) error = fit.remarks.empty() ? "the calibration failed" : fit.remarks.front();
+  store.finish(id,
+               failed ? "failed" : "done",
+               print_fit(calibration, fit),
+               failed ? std::nullopt : std::optional(fit.misfit),
+               error,
+               microseconds_now());
+}
+
+/// Runs a calibration that is in the state running, and leaves it in the state it has come to.
+void Service::State::run(std::int64_t id,
+                         const Calibration& calibration,
+                         const std::stop_token& stop,
+                         const CalibrationEvents& events) {
+  Workers workers(store, worker_options);
+  std::int64_t ordinal = 0;
+  bool interrupted = false;
+  Pace pace;
+  const calibrator::Evaluator evaluator = [&](std::span<const engine::Trial> trials) {
+    auto evaluations = workers.run(trials, stop, events.trial);
+    store.note_used(id, ordinal, workers.used());
+    ordinal += static_cast<std::int64_t>(workers.used().size());
+    interrupted |= workers.interrupted();
+    return evaluations;
+  };
+  const auto observer = [&](const calibrator::Progress& progress) {
+    if (pace.due()) store.set_progress(id, print_progress(calibration, progress));
+    if (events.progress) events.progress(progress);
+  };
+  try {
+    const Fit fit = calibrator::calibrate(calibration, evaluator, stop, observer);
+    // A fit that lacks evaluations because of a stop is no fit.
+    interrupted |= stop.stop_requested() || fit.stop == calibrator::StopReason::cancelled;
+    if (!interrupted) conclude(id, calibration, fit);
+  } catch (const std::exception& problem) {
+    take_cancel(id);
+    store.finish(id, "failed", {}, {}, problem.what(), microseconds_now());
+    return;
+  }
+  if (!interrupted) return;
+  if (take_cancel(id)) {
+    store.finish(id, "cancelled", {}, {}, {}, microseconds_now());
+  } else {
+    store.requeue(id);  // the process ends, not the question
+  }
+}
+
+void Service::State::run_job(std::int64_t id, const std::stop_token& stop) {
+  try {
+    const auto record = store.calibration(id);
+    if (!record || !store.start(id, microseconds_now())) return;
+    const auto calibration = parse_calibration(record->request);
+    if (!calibration) {
+      store.finish(id, "failed", {}, {}, calibration.error().front().message, microseconds_now());
+      return;
+    }
+    run(id, *calibration, stop, {});
+  } catch (const std::exception&) {
+    // The store itself fails (a full disk): the row stays as it is, and the next start takes it up.
+    return;
+  }
+}
+
+Service::Service(const ServiceOptions& options) : state_(std::make_unique<State>(options)) {}
+Service::~Service() = default;
+
+namespace {
+
+/// The study's canonical document, or what is wrong with it.
+Answer<Calibration> read_study(std::string_view study) {
+  auto parsed = parse_calibration(study);
+  if (parsed) return std::move(parsed).value();
+  return Unexpected{Refusal{Refusal::Kind::invalid,
+                            "the study has " + std::to_string(parsed.error().size()) +
+                                (parsed.error().size() == 1 ? " problem" : " problems"),
+                            parsed.error()}};
+}
+
+}  // namespace
+
+Answer<std::string> Service::submit(std::string_view study) {
+  const auto calibration = read_study(study);
+  if (!calibration) return Unexpected{calibration.error()};
+  const std::string request = print_calibration(*calibration);
+  const std::int64_t id = state_->store.add_calibration(
+      calibration->name, request, digest(request), microseconds_now());
+  if (state_->scheduler) state_->scheduler->submit(id);
+  return this->calibration(id);
+}
+
+Answer<std::string> Service::calibrate(std::string_view study,
+                                       std::stop_token stop,
+                                       const CalibrationEvents& events) {
+  const auto calibration = read_study(study);
+  if (!calibration) return Unexpected{calibration.error()};
+  const std::string request = print_calibration(*calibration);
+  const auto unfinished = state_->store.unfinished(digest(request));
+  const std::int64_t id =
+      unfinished ? unfinished->id
+                 : state_->store.add_calibration(
+                       calibration->name, request, digest(request), microseconds_now());
+  if (!state_->store.start(id, microseconds_now())) {
+    return Unexpected{Refusal{Refusal::Kind::wrong_state,
+                              "calibration " + std::to_string(id) + " is running already",
+                              {}}};
+  }
+  state_->run(id, *calibration, stop, events);
+  return this->calibration(id);
+}
+
+Answer<std::string> Service::calibration(std::int64_t id) const {
+  const auto record = state_->store.calibration(id);
+  if (!record) return Unexpected{not_found(id)};
+  return print_job(*record);
+}
+
+std::string Service::calibrations(int limit, std::optional<std::int64_t> before) const {
+  return print_jobs(state_->store.calibrations(limit, before), limit);
+}
+
+Answer<std::string> Service::evaluations(std::int64_t calibration,
+                                         int limit,
+                                         std::optional<std::int64_t> after) const {
+  if (!state_->store.calibration(calibration)) return Unexpected{not_found(calibration)};
+  return print_used(state_->store.used(calibration, limit, after), limit);
+}
+
+std::string Service::best_fits(std::optional<std::string> name) const {
+  return print_best_fits(state_->store.best_fits(name));
+}
+
+Answer<std::string> Service::cancel(std::int64_t id) {
+  const auto record = state_->store.calibration(id);
+  if (!record) return Unexpected{not_found(id)};
+  const auto final = [&]() -> Answer<std::string> {
+    return Unexpected{Refusal{Refusal::Kind::wrong_state,
+                              "calibration " + std::to_string(id) + " has ended: it is " +
+                                  state_->store.calibration(id)->state,
+                              {}}};
+  };
+  if (record->finished_at) return final();
+  {
+    // Before the job is asked to stop, so that it knows why.
+    const std::scoped_lock hold(state_->mutex);
+    state_->cancelled.insert(id);
+  }
+  const auto where =
+      state_->scheduler ? state_->scheduler->cancel(id) : Schedule::Cancelled::unknown;
+  if (where == Schedule::Cancelled::running) return calibration(id);
+  state_->take_cancel(id);
+  if (!state_->store.finish(id, "cancelled", {}, {}, {}, microseconds_now())) return final();
+  return calibration(id);
+}
+
+std::vector<engine::Evaluation> Service::evaluate(const engine::Trial& trial, int replicates) {
+  std::vector<engine::Trial> trials(static_cast<std::size_t>(replicates), trial);
+  for (std::size_t i = 0; i < trials.size(); ++i) trials[i].seed = trial.seed + i;
+  Workers workers(state_->store, state_->worker_options);
+  return workers.run(trials, {}, {});
+}
+
+std::string Service::health() const {
+  return print_health(state_->store.file().string(), state_->store.count_by_state());
+}
+
+}  // namespace repose::server
