@@ -17,6 +17,7 @@ namespace {
 using repose::server::parse_calibration;
 using repose::server::print_calibration;
 using repose::server::print_fit;
+using repose::tests::conforms;
 using repose::tests::Json;
 using repose::tests::violations;
 namespace fs = std::filesystem;
@@ -61,9 +62,9 @@ TEST_CASE("every valid example conforms to the schema, and so does what is print
   for (const fs::path& path : files("valid")) {
     INFO(path);
     const std::string text = read(path);
-    CHECK(violations(schema("calibration"), Json::parse(text)) == std::vector<std::string>{});
+    CHECK_THAT(violations(schema("calibration"), Json::parse(text)), conforms());
     const Json printed = Json::parse(print_calibration(*parse_calibration(text)));
-    CHECK(violations(schema("calibration"), printed) == std::vector<std::string>{});
+    CHECK_THAT(violations(schema("calibration"), printed), conforms());
   }
 }
 
@@ -118,11 +119,10 @@ TEST_CASE("the answer of a cancelled calibration conforms to the schema of fits"
   }
   fit.history.push_back(
       {1, "start", fit.best, std::vector<double>(calibration->measurements.size(), 1.0), 1.0, 1.0});
-  CHECK(violations(schema("fit"), Json::parse(print_fit(*calibration, fit))) ==
-        std::vector<std::string>{});
+  CHECK_THAT(violations(schema("fit"), Json::parse(print_fit(*calibration, fit))), conforms());
 }
 
 TEST_CASE("a problem conforms to its schema", "[schemas]") {
   const auto reply = repose::server::problem_reply(422, "no", {{"/a", "wrong", "1", "2"}});
-  CHECK(violations(schema("problem"), Json::parse(reply.body)) == std::vector<std::string>{});
+  CHECK_THAT(violations(schema("problem"), Json::parse(reply.body)), conforms());
 }

@@ -18,14 +18,27 @@ class Check {
     for (const auto& [keyword, rule] : schema.items()) {
       const auto known = rules.find(keyword);
       if (known == rules.end()) {
-        wrong_.push_back(at + ": the keyword " + keyword + " is not checked");
+        complain(at, "a keyword is not checked: ", keyword);
       } else if (known->second != nullptr && !(this->*known->second)(schema, rule, value, at)) {
-        wrong_.push_back(at + ": " + keyword + " " + rule.dump());
+        complain(at, keyword, rule.dump());
       }
     }
   }
 
  private:
+  void complain(const std::string& at, const std::string& what, const std::string& rule) {
+    std::string text = at;
+    text.append(": ").append(what).append(" ").append(rule);
+    wrong_.push_back(std::move(text));
+  }
+
+  /// The pointer to a member.
+  static std::string below(const std::string& at, const std::string& name) {
+    std::string text = at;
+    text.append("/").append(name);
+    return text;
+  }
+
   using Rule = bool (Check::*)(const Json&, const Json&, const Json&, const std::string&);
   static const std::map<std::string, Rule> rules;
 
@@ -72,7 +85,7 @@ class Check {
   bool properties(const Json&, const Json& rule, const Json& value, const std::string& at) {
     if (!value.is_object()) return true;
     for (const auto& [name, schema] : rule.items()) {
-      if (value.contains(name)) run(schema, value.at(name), at + "/" + name);
+      if (value.contains(name)) run(schema, value.at(name), below(at, name));
     }
     return true;
   }
@@ -82,14 +95,14 @@ class Check {
     for (const auto& [name, member] : value.items()) {
       if (known.contains(name)) continue;
       if (rule.is_boolean() && !rule.get<bool>()) return false;
-      if (rule.is_object()) run(rule, member, at + "/" + name);
+      if (rule.is_object()) run(rule, member, below(at, name));
     }
     return true;
   }
   bool items(const Json&, const Json& rule, const Json& value, const std::string& at) {
     if (!value.is_array()) return true;
     for (std::size_t i = 0; i < value.size(); ++i) {
-      run(rule, value[i], at + "/" + std::to_string(i));
+      run(rule, value[i], below(at, std::to_string(i)));
     }
     return true;
   }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 namespace repose::tests {
@@ -13,5 +14,11 @@ using Json = nlohmann::ordered_json;
 /// What is wrong, each with its pointer; nothing where the document conforms. A keyword that is not
 /// known here is reported too: a check that does nothing would pass for one that passed.
 std::vector<std::string> violations(const Json& schema, const Json& document);
+
+/// For CHECK_THAT, which shows what is wrong: nothing is.
+inline auto conforms() {
+  static const std::vector<std::string> nothing;  // the matcher keeps a reference
+  return Catch::Equals(nothing);
+}
 
 }  // namespace repose::tests

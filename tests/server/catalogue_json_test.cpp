@@ -26,7 +26,7 @@ TEST_CASE("the catalogue's document holds every effect with bounds that contain 
       CHECK(engine::find_parameter(parameter["field"].get<std::string>()) != nullptr);
       CHECK(parameter["lower"].get<double>() <= parameter["null"].get<double>());
       CHECK(parameter["null"].get<double>() <= parameter["upper"].get<double>());
-      CHECK(parameter["units"].size() >= 1);
+      CHECK(!parameter["units"].empty());
     }
   }
 }
@@ -34,7 +34,7 @@ TEST_CASE("the catalogue's document holds every effect with bounds that contain 
 TEST_CASE("every setting has a default at every fidelity, in the unit shown", "[server]") {
   REQUIRE(catalogue()["experiments"].size() == engine::experiment_catalogue().size());
   for (const Json& experiment : catalogue()["experiments"]) {
-    CHECK(experiment["observables"].size() >= 1);
+    CHECK(!experiment["observables"].empty());
     for (const Json& setting : experiment["settings"]) {
       for (const std::string_view fidelity : engine::fidelity_names) {
         const Json& value = setting["default"][std::string(fidelity)];

@@ -10,8 +10,8 @@ using repose::server::Json;
 using repose::server::parse_text;
 using repose::server::ProblemList;
 using repose::server::Problems;
-using repose::server::to_text;
 using repose::server::TextLimits;
+using repose::server::to_text;
 
 Problems problems_of(const std::string& text, const TextLimits& limits = {}) {
   ProblemList problems;
