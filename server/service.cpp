@@ -112,17 +112,21 @@ void Service::State::run(std::int64_t id,
   Pace pace;
   const calibrator::Evaluator evaluator = [&](std::span<const engine::Trial> trials) {
     auto evaluations = workers.run(trials, stop, events.trial);
-    store.note_used(id, ordinal, workers.used());
+    // An interrupted batch has gaps; it is noted when it has been run to its end.
+    if (!workers.interrupted()) store.note_used(id, ordinal, workers.used());
     ordinal += static_cast<std::int64_t>(workers.used().size());
     interrupted |= workers.interrupted();
     return evaluations;
   };
+  std::optional<calibrator::Progress> last;
   const auto observer = [&](const calibrator::Progress& progress) {
+    last = progress;
     if (pace.due()) store.set_progress(id, print_progress(calibration, progress));
     if (events.progress) events.progress(progress);
   };
   try {
     const Fit fit = calibrator::calibrate(calibration, evaluator, stop, observer);
+    if (last) store.set_progress(id, print_progress(calibration, *last));
     // A fit that lacks evaluations because of a stop is no fit.
     interrupted |= stop.stop_requested() || fit.stop == calibrator::StopReason::cancelled;
     if (!interrupted) conclude(id, calibration, fit);

@@ -1,12 +1,14 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <limits>
 #include <mutex>
 #include <optional>
 #include <stop_token>
+#include <sys/prctl.h>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -259,6 +261,8 @@ int evaluate_command(const EvaluateCommand& command) {
 }
 
 int answer_command() {
+  // Whoever asked is gone: nobody will read the answer.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   ignore_interrupts();
   const auto text = read_text("-");
   if (!text) return report_error(text.error(), false);

@@ -112,26 +112,34 @@ ChildResult run_child(const std::filesystem::path& program,
   ChildResult result;
   const auto deadline = Clock::now() + std::chrono::duration<double>(time_limit);
   std::array<char, 16384> buffer{};
-  for (bool open = true; open;) {
+  int status = 0;
+  bool ended = false;
+  for (bool open = true; !ended;) {
     pollfd watched{answer_out.get(), POLLIN, 0};
     constexpr int look_up = 50;  // ms between looks at the clock and the stop token
-    if (poll(&watched, 1, look_up) > 0) {
+    // One that has closed its output but lives on is watched all the same.
+    if (!open) watched.fd = -1;
+    if (poll(&watched, 1, open ? look_up : 1) > 0) {
       const ssize_t count = read(answer_out.get(), buffer.data(), buffer.size());
       if (count > 0) result.output.append(buffer.data(), static_cast<std::size_t>(count));
       open = count > 0 || (count < 0 && errno == EINTR);
     }
-    if (!open) break;
+    if (!open) ended = waitpid(child, &status, WNOHANG) == child;
+    if (ended) break;
     if (stop.stop_requested()) result.end = ChildResult::End::cancelled;
     if (Clock::now() >= deadline) result.end = ChildResult::End::timed_out;
+    constexpr std::size_t longest = 16U << 20U;  // bytes; an answer has some hundreds
+    if (result.output.size() > longest) result.end = ChildResult::End::died;
     if (result.end != ChildResult::End::exited) {
       end_group(child);
-      open = false;
+      break;
     }
   }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  while (!ended && waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (result.end != ChildResult::End::exited) {
+  if (result.end == ChildResult::End::died) {
+    result.account = "wrote without end";
+  } else if (result.end != ChildResult::End::exited) {
     result.account =
         result.end == ChildResult::End::cancelled ? "was asked to stop" : "ran past its time limit";
   } else if (WIFSIGNALED(status)) {

@@ -1,0 +1,153 @@
+#include "server/service.hpp"
+
+#include <condition_variable>
+#include <fstream>
+#include <mutex>
+#include <sstream>
+
+#include <catch2/catch.hpp>
+
+#include "db/store.hpp"
+#include "server/json/report_json.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace repose;
+using namespace repose::server;
+using repose::tests::TemporaryFolder;
+
+namespace {
+
+std::string drop_study() {
+  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+ServiceOptions in(const TemporaryFolder& folder) {
+  ServiceOptions options;
+  options.database = folder / "a.db";
+  options.workers = 2;
+  return options;
+}
+
+CalibrationDocument read(const Answer<std::string>& answer) {
+  REQUIRE(answer.has_value());
+  const auto document = parse_document(*answer);
+  REQUIRE(document.has_value());
+  return *document;
+}
+
+/// Calibrates; also counts the trials that were run and those that the store had.
+CalibrationDocument calibrate(Service& service, int& run, int& stored) {
+  CalibrationEvents events;
+  run = stored = 0;
+  events.trial = [&](std::size_t, std::size_t, bool was_stored) { ++(was_stored ? stored : run); };
+  return read(service.calibrate(drop_study(), {}, events));
+}
+
+}  // namespace
+
+TEST_CASE("a calibration ends done, with a fit", "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  int run = 0, stored = 0;
+  const auto document = calibrate(service, run, stored);
+  CHECK(document.state == "done");
+  REQUIRE(document.fit.has_value());
+  CHECK(document.fit->predictions.size() == 1);
+  CHECK(run > 5);
+  CHECK_FALSE(document.finished_at.empty());
+}
+
+TEST_CASE("a second calibration of the same study runs nothing anew and finds the same",
+          "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  int run = 0, stored = 0;
+  const auto first = calibrate(service, run, stored);
+  const auto second = calibrate(service, run, stored);
+  CHECK(run == 0);
+  CHECK(stored > 5);
+  CHECK(second.id != first.id);
+  CHECK(second.fit->misfit == first.fit->misfit);
+  CHECK(second.fit->best == first.fit->best);
+}
+
+TEST_CASE("a calibration that was stopped is taken up again", "[server]") {
+  const TemporaryFolder folder;
+  std::int64_t id = 0;
+  {
+    Service service(in(folder));
+    std::stop_source source;
+    CalibrationEvents events;
+    events.trial = [&source](std::size_t, std::size_t, bool) { source.request_stop(); };
+    const auto document = read(service.calibrate(drop_study(), source.get_token(), events));
+    CHECK(document.state == "queued");
+    id = document.id;
+  }
+  Service service(in(folder));
+  int run = 0, stored = 0;
+  const auto document = calibrate(service, run, stored);
+  CHECK(document.id == id);
+  CHECK(document.state == "done");
+  CHECK(stored > 0);
+}
+
+TEST_CASE("a submitted calibration is run in the background", "[server]") {
+  const TemporaryFolder folder;
+  std::int64_t id = 0;
+  {
+    Service service(in(folder));  // does not run jobs
+    const auto document = read(service.submit(drop_study()));
+    CHECK(document.state == "queued");
+    id = document.id;
+  }
+  ServiceOptions options = in(folder);
+  options.run_jobs = true;
+  Service service(options);
+  std::string state;
+  for (int look = 0; look < 100000 && state != "done"; ++look) {
+    state = read(service.calibration(id)).state;
+  }
+  CHECK(state == "done");
+}
+
+TEST_CASE("a study with mistakes is refused with all of them", "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  const auto answer = service.submit(R"({"name": 3, "fre": []})");
+  REQUIRE_FALSE(answer.has_value());
+  CHECK(answer.error().kind == Refusal::Kind::invalid);
+  CHECK(answer.error().problems.size() > 2);
+  CHECK(parse_items(service.calibrations(10, std::nullopt)).empty());
+}
+
+TEST_CASE("a waiting calibration is cancelled at once, a finished one not at all", "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  const auto waiting = read(service.submit(drop_study()));
+  CHECK(read(service.cancel(waiting.id)).state == "cancelled");
+  const auto again = service.cancel(waiting.id);
+  REQUIRE_FALSE(again.has_value());
+  CHECK(again.error().kind == Refusal::Kind::wrong_state);
+  const auto none = service.cancel(99);
+  REQUIRE_FALSE(none.has_value());
+  CHECK(none.error().kind == Refusal::Kind::not_found);
+}
+
+TEST_CASE("what is stored can be read while a service runs", "[server]") {
+  const TemporaryFolder folder;
+  Service writer(in(folder));
+  int run = 0, stored = 0;
+  const auto id = calibrate(writer, run, stored).id;
+  ServiceOptions options = in(folder);
+  options.read_only = true;
+  const Service reader(options);
+  CHECK(read(reader.calibration(id)).state == "done");
+  CHECK(parse_items(reader.calibrations(10, std::nullopt)).size() == 1);
+  CHECK(reader.best_fits(std::nullopt).find("\"parameters\":[{") != std::string::npos);
+  CHECK(reader.best_fits("another").find("\"items\":[]") != std::string::npos);
+  CHECK(reader.evaluations(id, 3, std::nullopt)->find("\"next\":2") != std::string::npos);
+  CHECK_THROWS_AS(Service(in(folder)), db::Error);
+}

@@ -1,0 +1,152 @@
+#include "server/jobs/workers.hpp"
+
+#include <fstream>
+
+#include <catch2/catch.hpp>
+
+#include "server/json/evaluation_json.hpp"
+#include "tests/support/reference_grain.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace repose;
+using namespace repose::server;
+using repose::tests::TemporaryFolder;
+
+namespace {
+
+engine::Trial drop(double height, std::uint64_t seed = 1) {
+  return {repose::tests::reference_grain(),
+          {"drop", engine::Fidelity::draft, {{"height", height}}},
+          seed};
+}
+
+/// A program that stands in for `repose answer`.
+std::filesystem::path script(const TemporaryFolder& folder, const std::string& body) {
+  const auto path = folder / "program";
+  std::ofstream(path) << "#!/bin/sh\n" << body << "\n";
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  return path;
+}
+
+engine::FailureKind failure(const engine::Evaluation& evaluation) {
+  REQUIRE(std::holds_alternative<engine::Failure>(evaluation.outcome));
+  return std::get<engine::Failure>(evaluation.outcome).kind;
+}
+
+double restitution(const engine::Evaluation& evaluation) {
+  REQUIRE(std::holds_alternative<std::vector<engine::Observation>>(evaluation.outcome));
+  return std::get<std::vector<engine::Observation>>(evaluation.outcome).at(0).value;
+}
+
+}  // namespace
+
+TEST_CASE("a batch comes back in its order, whoever finishes first", "[server]") {
+  const TemporaryFolder folder;
+  db::Store store(folder / "a.db", db::Access::write);
+  Workers workers(store, {.workers = 4});
+  std::vector<engine::Trial> trials;
+  for (const double height : {2.0, 0.01, 1.0, 0.02, 0.5}) trials.push_back(drop(height));
+  const auto evaluations = workers.run(trials, {}, {});
+  REQUIRE(evaluations.size() == trials.size());
+  for (std::size_t i = 0; i < trials.size(); ++i) CHECK(evaluations[i].trial == trials[i]);
+  CHECK(workers.used().size() == 5);
+  CHECK(workers.used()[1] == evaluation_key(trials[1]));
+  CHECK_FALSE(workers.interrupted());
+}
+
+TEST_CASE("equal trials run once, and what the store has is not run again", "[server]") {
+  const TemporaryFolder folder;
+  db::Store store(folder / "a.db", db::Access::write);
+  Workers workers(store, {.workers = 2});
+  const std::vector trials{drop(0.1), drop(0.1), drop(0.2)};
+  std::vector<bool> stored;
+  const auto note = [&stored](std::size_t done, std::size_t all, bool was_stored) {
+    stored.push_back(was_stored);
+    CHECK(done == stored.size());
+    CHECK(all == 2);
+  };
+  const auto first = workers.run(trials, {}, note);
+  CHECK(stored == std::vector<bool>{false, false});
+  stored.clear();
+  const auto second = workers.run(trials, {}, note);
+  CHECK(stored == std::vector<bool>{true, true});
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    CHECK(restitution(first[i]) == restitution(second[i]));
+  }
+}
+
+TEST_CASE("the answer of a process is that of this process, bit for bit", "[server]") {
+  const TemporaryFolder folder;
+  db::Store one(folder / "one.db", db::Access::write);
+  db::Store two(folder / "two.db", db::Access::write);
+  const std::vector trials{drop(0.3)};
+  const auto here = Workers(one, {.workers = 1}).run(trials, {}, {});
+  const auto there = Workers(two, {.workers = 1, .program = REPOSE_PROGRAM}).run(trials, {}, {});
+  CHECK(restitution(here[0]) == restitution(there[0]));
+  CHECK(here[0].effort.steps == there[0].effort.steps);
+}
+
+TEST_CASE("a process that dies, rambles or hangs costs its own evaluation only", "[server]") {
+  const TemporaryFolder folder;
+  db::Store store(folder / "a.db", db::Access::write);
+  const std::vector trials{drop(0.1)};
+  const auto run = [&](const std::string& body, double limit) {
+    return failure(
+        Workers(store, {.workers = 1, .program = script(folder, body), .time_limit = limit})
+            .run(trials, {}, {})
+            .at(0));
+  };
+  CHECK(run("kill -SEGV $$", 10) == engine::FailureKind::crashed);
+  CHECK(run("echo hello", 10) == engine::FailureKind::crashed);
+  CHECK(run("exit 3", 10) == engine::FailureKind::crashed);
+  CHECK(run("cat >/dev/null; while :; do :; done", 0.2) == engine::FailureKind::timed_out);
+  CHECK(run("trap '' TERM; exec sleep 1000", 0.2) == engine::FailureKind::timed_out);
+  CHECK(run("exec >&-; exec sleep 1000", 0.2) == engine::FailureKind::timed_out);
+  CHECK(run("exec yes", 10) == engine::FailureKind::crashed);
+  CHECK_FALSE(store.evaluation(evaluation_key(trials[0])).has_value());  // none is an answer
+}
+
+TEST_CASE("a process that dies once is asked once more", "[server]") {
+  const TemporaryFolder folder;
+  db::Store store(folder / "a.db", db::Access::write);
+  const auto program =
+      script(folder,
+             "if [ -e " + (folder / "been").string() + " ]; then exec " + REPOSE_PROGRAM +
+                 " answer; fi\n: > " + (folder / "been").string() + "\nkill -KILL $$");
+  const auto evaluations =
+      Workers(store, {.workers = 1, .program = program}).run(std::vector{drop(0.1)}, {}, {});
+  CHECK(restitution(evaluations[0]) > 0.5);
+}
+
+TEST_CASE("a batch that is asked to stop comes back at once, and nothing of it is kept",
+          "[server]") {
+  const TemporaryFolder folder;
+  db::Store store(folder / "a.db", db::Access::write);
+  std::stop_source source;
+  source.request_stop();
+  Workers workers(store, {.workers = 2, .program = script(folder, "exec sleep 1000")});
+  const std::vector trials{drop(0.1), drop(0.2), drop(0.3)};
+  for (const auto& evaluation : workers.run(trials, source.get_token(), {})) {
+    CHECK(failure(evaluation) == engine::FailureKind::cancelled);
+  }
+  CHECK(workers.interrupted());
+  CHECK(workers.used().empty());
+}
+
+TEST_CASE("a running process is ended when its batch is asked to stop", "[server]") {
+  const TemporaryFolder folder;
+  db::Store store(folder / "a.db", db::Access::write);
+  std::stop_source source;
+  // The first trial ends only once the second one's process runs.
+  const std::string runs = (folder / "runs").string();
+  const auto program = script(folder,
+                              "if grep -q '\"seed\":1[,}]'; then while [ ! -e " + runs +
+                                  " ]; do :; done; exit; fi; : > " + runs + "; exec sleep 1000");
+  Workers workers(store, {.workers = 2, .program = program, .time_limit = 10});
+  const auto stop_after_first = [&source](std::size_t, std::size_t, bool) {
+    source.request_stop();
+  };
+  const auto evaluations =
+      workers.run(std::vector{drop(0.1, 1), drop(0.1, 2)}, source.get_token(), stop_after_first);
+  CHECK(failure(evaluations[1]) == engine::FailureKind::cancelled);
+}
