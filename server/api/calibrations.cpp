@@ -30,8 +30,8 @@ Reply submit_calibration(Service& service, const Request& request) {
 
 Reply list_calibrations(Service& service, const Request& request) {
   Query query(request);
-  const auto limit = static_cast<int>(query.whole("limit", largest_page).value_or(usual_page));
-  const auto before = query.whole("before");
+  const auto limit = static_cast<int>(query.whole("limit", 1, largest_page).value_or(usual_page));
+  const auto before = query.whole("before", 1);
   if (!query.problems().empty()) return query.refusal();
   return {.status = 200, .body = service.calibrations(limit, before)};
 }
@@ -42,8 +42,8 @@ Reply get_calibration(Service& service, const Request& request) {
 
 Reply list_evaluations(Service& service, const Request& request) {
   Query query(request);
-  const auto limit = static_cast<int>(query.whole("limit", largest_page).value_or(usual_page));
-  const auto after = query.whole("after");
+  const auto limit = static_cast<int>(query.whole("limit", 1, largest_page).value_or(usual_page));
+  const auto after = query.whole("after", 0);
   if (!query.problems().empty()) return query.refusal();
   return reply_of(service.evaluations(request.id, limit, after), 200);
 }

@@ -23,18 +23,21 @@ void Query::complain(std::string_view name,
   problems_.push_back({"?" + std::string(name), message, found, allowed});
 }
 
-std::optional<std::int64_t> Query::whole(std::string_view name, std::int64_t most) {
+std::optional<std::int64_t> Query::whole(std::string_view name,
+                                         std::int64_t least,
+                                         std::int64_t most) {
   const auto text = once(name);
   if (!text) return std::nullopt;
   std::int64_t value = 0;
   const char* const end = text->data() + text->size();
   const auto result = std::from_chars(text->data(), end, value);
-  if (result.ec == std::errc{} && result.ptr == end && value >= 1 && value <= most) return value;
+  if (result.ec == std::errc{} && result.ptr == end && value >= least && value <= most)
+    return value;
   constexpr std::size_t longest = 40;
   complain(name,
            std::string(name) + " is a whole number in its bounds",
            "\"" + text->substr(0, longest) + "\"",
-           "1 to " + std::to_string(most));
+           std::to_string(least) + " to " + std::to_string(most));
   return std::nullopt;
 }
 

@@ -20,8 +20,9 @@ class Query {
  public:
   explicit Query(const Request& request) : request_(request) {}
 
-  /// A whole number from 1; nothing where it is not given or has a problem.
+  /// A whole number in these bounds; nothing where it is not given or has a problem.
   std::optional<std::int64_t> whole(std::string_view name,
+                                    std::int64_t least,
                                     std::int64_t most = std::numeric_limits<std::int64_t>::max());
   std::optional<std::string> text(std::string_view name);
 

@@ -34,7 +34,8 @@ struct Reply {
 struct QueryField {
   std::string_view name;
   std::string_view meaning;
-  bool whole = true;  ///< a whole number from 1; else any text
+  bool whole = true;       ///< a whole number; else any text
+  std::int64_t least = 1;  ///< of a whole number
 };
 
 using Handler = Reply (*)(Service& service, const Request& request);

@@ -19,7 +19,7 @@ constexpr std::array<QueryField, 2> list_fields{{
 }};
 constexpr std::array<QueryField, 2> evaluation_fields{{
     {"limit", "how many items, 1 to 200 (50 where it is not given)"},
-    {"after", "only items after this one: the answer's `next`"},
+    {"after", "only items after this one: the answer's `next`", true, 0},
 }};
 constexpr std::array<QueryField, 1> best_fit_fields{
     {{"name", "only of the study of that name", false}}};
@@ -106,7 +106,8 @@ Reply run(const Route& route, Service& service, const Request& request) {
 std::span<const Route> routes() { return table; }
 
 Reply respond(Service& service, Request request) {
-  const std::string_view method = request.method == "HEAD" ? "GET" : request.method;
+  const std::string_view asked = request.method;
+  const std::string_view method = asked == "HEAD" ? "GET" : asked;
   std::string allowed;
   for (const Route& route : table) {
     const auto id = match(route.pattern, request.path);

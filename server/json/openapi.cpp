@@ -75,16 +75,18 @@ Json content(const char* type, Json schema) {
 }
 
 Json print_parameters(const Route& route) {
-  const Json whole{{"type", "integer"}, {"minimum", 1}};
+  const auto whole = [](std::int64_t least) {
+    return Json{{"type", "integer"}, {"minimum", least}};
+  };
   Json result = Json::array();
   if (route.pattern.find("{id}") != std::string_view::npos) {
-    result.push_back({{"name", "id"}, {"in", "path"}, {"required", true}, {"schema", whole}});
+    result.push_back({{"name", "id"}, {"in", "path"}, {"required", true}, {"schema", whole(1)}});
   }
   for (const QueryField& field : route.query) {
     result.push_back({{"name", field.name},
                       {"in", "query"},
                       {"description", field.meaning},
-                      {"schema", field.whole ? whole : Json{{"type", "string"}}}});
+                      {"schema", field.whole ? whole(field.least) : Json{{"type", "string"}}}});
   }
   return result;
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -7,6 +9,7 @@
 #include "server/api/guard.hpp"
 #include "server/api/query.hpp"
 #include "server/api/route.hpp"
+#include "server/service.hpp"
 
 namespace {
 
@@ -48,6 +51,33 @@ TEST_CASE("no two routes answer the same request, and all names differ", "[serve
     CHECK(!route.summary.empty());
     CHECK(route.handler != nullptr);
   }
+}
+
+TEST_CASE("every route is answered by its own method and by no other", "[server]") {
+  char name[] = "/tmp/repose-routes-XXXXXX";
+  REQUIRE(mkdtemp(name) != nullptr);
+  {
+    repose::server::ServiceOptions options;
+    options.database = std::filesystem::path(name) / "repose.db";
+    repose::server::Service service(options);
+    for (const Route& route : routes()) {
+      std::string path(route.pattern);
+      if (const auto at = path.find("{id}"); at != std::string::npos) path.replace(at, 4, "7");
+      for (const char* method : {"GET", "HEAD", "POST", "DELETE", "PUT", "PATCH", "OPTIONS"}) {
+        INFO(method << " " << path);
+        const std::string_view plain = std::string_view(method) == "HEAD" ? "GET" : method;
+        const auto is_allowed = [&](const Route& other) {
+          return other.pattern == route.pattern && other.method == plain;
+        };
+        const bool allowed = std::ranges::any_of(routes(), is_allowed);
+        Request request;
+        request.method = method;
+        request.path = path;
+        CHECK((respond(service, request).status != 405) == allowed);
+      }
+    }
+  }
+  std::filesystem::remove_all(name);
 }
 
 TEST_CASE("a head without faults is not refused", "[server]") {
@@ -118,15 +148,15 @@ TEST_CASE("more than one range is refused", "[server]") {
   CHECK(status(ranges) == 416);
 }
 
-TEST_CASE("a field of the query is a whole number from 1 or a problem", "[server]") {
+TEST_CASE("a field of the query is a whole number in its bounds or a problem", "[server]") {
   const Request good = asking("limit", "200");
-  CHECK(Query(good).whole("limit", 200) == 200);
-  CHECK(!Query(good).whole("before"));
+  CHECK(Query(good).whole("limit", 1, 200) == 200);
+  CHECK(!Query(good).whole("before", 1));
   for (const char* wrong :
        {"", "0", "-1", "201", "1.0", "1 ", " 1", "x", "0x1", "99999999999999999999999"}) {
     const Request request = asking("limit", wrong);
     Query query(request);
-    CHECK(!query.whole("limit", 200));
+    CHECK(!query.whole("limit", 1, 200));
     REQUIRE(query.problems().size() == 1);
     CHECK(query.problems()[0].pointer == "?limit");
   }
@@ -136,7 +166,7 @@ TEST_CASE("a field that is there twice is a problem", "[server]") {
   Request request = asking("limit", "1");
   request.query.emplace("limit", "2");
   Query query(request);
-  CHECK(query.whole("limit"));
+  CHECK(query.whole("limit", 1));
   CHECK(query.problems().size() == 1);
 }
 
