@@ -197,9 +197,11 @@ bool Kettle::pour_from_hopper(const Settings& s, Session& session) {
   }
   if (!session.rest(5.0)) return false;
   session.stage("hopper filled");
+  // An opening of five grains gives 0.1 kg/s (Beverloo's law); a fifth of that is still a flow.
+  const double limit = 5.0 + volume(s) * session.grain().density * 0.64 / 0.02;
   session.world().change_surfaces().pop_back();
   return overflow(
-      s, session, [] {}, 120.0);
+      s, session, [] {}, limit);
 }
 
 Readings Kettle::run(const Settings& s, Session& session) {
