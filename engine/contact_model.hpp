@@ -66,7 +66,8 @@ class ContactModel {
 
 /// The parameters of an effect as a set gives them, null where it does not.
 template <Effect E>
-typename E::Parameters parameters_of(const ParameterSet& set, std::vector<MaterialId> between) {
+typename E::Parameters parameters_of(const ParameterSet& set,
+                                     const std::vector<MaterialId>& between) {
   typename E::Parameters result{};
   for (const auto& field : E::fields) {
     const std::string name = std::string(E::text.name) + "." + std::string(field.info.name);

@@ -187,7 +187,7 @@ Answer<std::string> Service::submit(std::string_view study) {
 }
 
 Answer<std::string> Service::calibrate(std::string_view study,
-                                       std::stop_token stop,
+                                       const std::stop_token& stop,
                                        const CalibrationEvents& events) {
   const auto calibration = read_study(study);
   if (!calibration) return Unexpected{calibration.error()};
@@ -223,7 +223,7 @@ Answer<std::string> Service::evaluations(std::int64_t calibration,
   return print_used(state_->store.used(calibration, limit, after), limit);
 }
 
-std::string Service::best_fits(std::optional<std::string> name) const {
+std::string Service::best_fits(const std::optional<std::string>& name) const {
   return print_best_fits(state_->store.best_fits(name));
 }
 

@@ -61,7 +61,7 @@ class Service {
   /// Runs a calibration here and now (or takes up an unfinished one with the same study); the
   /// answer is its document.
   Answer<std::string> calibrate(std::string_view study,
-                                std::stop_token stop,
+                                const std::stop_token& stop,
                                 const CalibrationEvents& events);
 
   /// {"id","name","state","created_at","started_at","finished_at","study","progress","fit","error"}
@@ -74,7 +74,7 @@ class Service {
                                                 std::optional<std::int64_t> after) const;
   /// {"items":[{"calibration","name","material","misfit","best",...}]}: the best finished fit of
   /// every study name, or of one.
-  [[nodiscard]] std::string best_fits(std::optional<std::string> name) const;
+  [[nodiscard]] std::string best_fits(const std::optional<std::string>& name) const;
   Answer<std::string> cancel(std::int64_t id);
 
   /// One virtual experiment, `replicates` seeds from `seed` on; stored like any other evaluation.

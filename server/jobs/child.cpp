@@ -12,8 +12,6 @@
 #include <system_error>
 #include <unistd.h>
 
-extern char** environ;
-
 namespace repose::server {
 
 namespace {

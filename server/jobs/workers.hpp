@@ -21,9 +21,9 @@
 namespace repose::server {
 
 struct WorkerOptions {
-  unsigned workers = 0;           ///< at once; 0: one per core
+  unsigned workers = 0;                ///< at once; 0: one per core
   std::filesystem::path program = {};  ///< empty: evaluations run on threads of this process
-  double time_limit = 3600.0;     ///< s of wall time for one evaluation
+  double time_limit = 3600.0;          ///< s of wall time for one evaluation
 };
 
 class Workers {

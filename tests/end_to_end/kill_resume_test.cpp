@@ -13,8 +13,6 @@
 #include "server/json/report_json.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-extern char** environ;
-
 using repose::tests::TemporaryFolder;
 
 namespace {
