@@ -189,10 +189,10 @@ void ContactList::find_pairs(const Grains& grains, const Vec3& period) {
     for (int z = sz.first[0]; z <= sz.last[0]; ++z) {
       for (int py = 0; py < sy.parts; ++py) {
         for (int y = sy.first[py]; y <= sy.last[py]; ++y) {
-          const int row = (z * grid_.ny + y) * grid_.nx;
+          const auto row = static_cast<std::size_t>((z * grid_.ny + y) * grid_.nx);
           for (int px = 0; px < sx.parts; ++px) {
-            visit(grid_.start[static_cast<std::size_t>(row + sx.first[px])],
-                  grid_.start[static_cast<std::size_t>(row + sx.last[px] + 1)]);
+            visit(grid_.start[row + static_cast<std::size_t>(sx.first[px])],
+                  grid_.start[row + static_cast<std::size_t>(sx.last[px]) + 1]);
           }
         }
       }

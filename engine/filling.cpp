@@ -17,9 +17,11 @@ std::uint64_t rain(Session& session, const Rain& order) {
   // Loose enough to lose the lattice on the way down: columns of near-touching grains settle into
   // an ordered bed that is 3 % too light and rolls on its lowest layer.
   const double pitch = 2.5 * session.largest_radius();
-  const auto cells = [pitch](double length) { return std::max(1.0, std::floor(length / pitch)); };
-  const double nx = cells(order.high_x - order.low_x);
-  const double ny = cells(order.high_y - order.low_y);
+  const auto cells = [pitch](double length) {
+    return std::max(1, static_cast<int>(length / pitch));
+  };
+  const int nx = cells(order.high_x - order.low_x);
+  const int ny = cells(order.high_y - order.low_y);
   const Vec3 step{(order.high_x - order.low_x) / nx, (order.high_y - order.low_y) / ny, pitch};
   const double jitter_x = 0.5 * step.x - session.largest_radius();
   const double jitter_y = 0.5 * step.y - session.largest_radius();
@@ -27,8 +29,8 @@ std::uint64_t rain(Session& session, const Rain& order) {
   Random random(session.seed(), Purpose::grain_position);
   std::uint64_t put = 0;
   for (int layer = 0; layer < most_layers && put < order.grains; ++layer) {
-    for (double i = 0; i < nx; ++i) {
-      for (double j = 0; j < ny && put < order.grains; ++j) {
+    for (int i = 0; i < nx; ++i) {
+      for (int j = 0; j < ny && put < order.grains; ++j) {
         GrainRow grain = session.next_grain();
         grain.x = order.low_x + (i + 0.5) * step.x + random.uniform(-jitter_x, jitter_x);
         grain.y = order.low_y + (j + 0.5) * step.y + random.uniform(-jitter_y, jitter_y);
