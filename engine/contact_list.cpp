@@ -186,10 +186,14 @@ void ContactList::find_pairs(const Grains& grains, const Vec3& period) {
         pairs.j.push_back(first_is_a ? b : a);
       }
     };
+    const auto row_of_cells = [this](int y, int z) {
+      const auto count = [](int cells) { return static_cast<std::size_t>(cells); };
+      return (count(z) * count(grid_.ny) + count(y)) * count(grid_.nx);
+    };
     for (int z = sz.first[0]; z <= sz.last[0]; ++z) {
       for (int py = 0; py < sy.parts; ++py) {
         for (int y = sy.first[py]; y <= sy.last[py]; ++y) {
-          const auto row = static_cast<std::size_t>((z * grid_.ny + y) * grid_.nx);
+          const std::size_t row = row_of_cells(y, z);
           for (int px = 0; px < sx.parts; ++px) {
             visit(grid_.start[row + static_cast<std::size_t>(sx.first[px])],
                   grid_.start[row + static_cast<std::size_t>(sx.last[px]) + 1]);
