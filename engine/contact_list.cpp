@@ -65,7 +65,8 @@ ContactList::Memory ContactList::remember(const Candidates& candidates,
     if (candidates.closed[k] == 0) continue;
     const std::uint32_t slot = next[grains.ids[candidates.i[k]]]++;
     m.j[slot] = partner == Partner::grain ? grains.ids[candidates.j[k]] : candidates.j[k];
-    std::copy_n(&candidates.history[k * columns], columns, &m.history[slot * columns]);
+    std::copy_n(
+        candidates.history.data() + k * columns, columns, m.history.data() + slot * columns);
   }
   return m;
 }
@@ -85,7 +86,8 @@ void ContactList::recall(const Memory& m,
     for (std::uint32_t slot = m.start[id]; slot < m.start[id + 1]; ++slot) {
       if (m.j[slot] != j) continue;
       candidates.closed[k] = 1;
-      std::copy_n(&m.history[slot * columns], columns, &candidates.history[k * columns]);
+      std::copy_n(
+          m.history.data() + slot * columns, columns, candidates.history.data() + k * columns);
       break;
     }
   }
@@ -254,7 +256,7 @@ void ContactList::renumber(const std::vector<std::uint32_t>& new_row, std::uint3
       c.i[kept] = i;
       c.j[kept] = j;
       c.closed[kept] = c.closed[k];
-      std::copy_n(&c.history[k * columns], columns, &c.history[kept * columns]);
+      std::copy_n(c.history.data() + k * columns, columns, c.history.data() + kept * columns);
       ++kept;
     }
     c.i.resize(kept);

@@ -49,7 +49,7 @@ std::vector<T> read_array(const std::string& vtp, const std::string& name) {
   std::memcpy(&size, bytes.data(), sizeof size);
   REQUIRE(bytes.size() == sizeof size + size);
   std::vector<T> values(size / sizeof(T));
-  std::memcpy(values.data(), bytes.data() + sizeof size, size);
+  if (size > 0) std::memcpy(values.data(), bytes.data() + sizeof size, size);
   return values;
 }
 
