@@ -198,6 +198,7 @@ TEST_CASE("many threads write without loss", "[db]") {
   Store store(folder / "a.db", Access::write);
   {
     std::vector<std::jthread> threads;
+    threads.reserve(4);
     for (int t = 0; t < 4; ++t) {
       threads.emplace_back([&store, t] {
         for (int i = 0; i < 25; ++i) {

@@ -33,7 +33,7 @@ std::filesystem::path slow_study(const TemporaryFolder& folder) {
   REQUIRE(at != std::string::npos);
   text.insert(at + before.size(),
               ", \"settings\": {\"steps_per_impact\": {\"value\": 10000, \"unit\": \"1\"}}");
-  const auto path = folder / "study.json";
+  auto path = folder / "study.json";
   std::ofstream(path) << text;
   return path;
 }

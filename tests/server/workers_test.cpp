@@ -22,7 +22,7 @@ engine::Trial drop(double height, std::uint64_t seed = 1) {
 
 /// A program that stands in for `repose answer`.
 std::filesystem::path script(const TemporaryFolder& folder, const std::string& body) {
-  const auto path = folder / "program";
+  auto path = folder / "program";
   std::ofstream(path) << "#!/bin/sh\n" << body << "\n";
   std::filesystem::permissions(path, std::filesystem::perms::owner_all);
   return path;
