@@ -1,8 +1,9 @@
 #include "calibrator/calibrate.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
@@ -27,7 +28,9 @@ bool mentions(const Fit& fit, const std::string& words) {
   });
 }
 
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
 
 void check_equal(const Fit& a, const Fit& b) {
   CHECK(a.best == b.best);

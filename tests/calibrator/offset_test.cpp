@@ -20,6 +20,7 @@ toy::Study biased(double bias) {
 
 void run_at(toy::Known& known, std::size_t site, int count, int first, Level level) {
   std::vector<Ledger::Request> requests;
+  requests.reserve(static_cast<std::size_t>(count));
   for (int r = 0; r < count; ++r) requests.push_back({site, first + r, level});
   known.ledger().run("pair", requests);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -58,10 +59,11 @@ inline BenchRun bench(const Study& study) {
 /// The p-quantile of evaluations to solve over the runs; `never` stands for those unsolved.
 inline int quantile(const std::vector<BenchRun>& runs, double p, int never = 1000) {
   std::vector<int> counts;
+  counts.reserve(runs.size());
   for (const BenchRun& run : runs) counts.push_back(run.solved_at > 0 ? run.solved_at : never);
   std::ranges::sort(counts);
-  const auto index = static_cast<std::size_t>(p * static_cast<double>(counts.size() - 1) + 0.5);
-  return counts[index];
+  const auto index = std::lround(p * static_cast<double>(counts.size() - 1));
+  return counts[static_cast<std::size_t>(index)];
 }
 
 inline double share_solved(const std::vector<BenchRun>& runs, int within) {
