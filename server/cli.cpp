@@ -6,9 +6,11 @@
 #include <functional>
 #include <iostream>
 #include <string>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 
+#include "db/store.hpp"
 #include "engine/catalogue.hpp"
 #include "engine/evaluate.hpp"
 #include "server/cli/commands.hpp"
@@ -256,6 +258,12 @@ int run_command_line(int argc, const char* const* argv) {
   }
   try {
     return work();
+  } catch (const db::Error& error) {  // the file named cannot be used
+    std::cerr << "repose: " << error.what() << "\n";
+    return exit_code::misused;
+  } catch (const std::system_error& error) {  // the folder or address named cannot be used
+    std::cerr << "repose: " << error.what() << "\n";
+    return exit_code::misused;
   } catch (const std::exception& error) {
     std::cerr << "repose: " << error.what() << "\n";
     return exit_code::failed;

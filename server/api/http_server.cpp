@@ -179,11 +179,12 @@ HttpServer::HttpServer(Responder responder, const HttpOptions& options)
     state.port = -1;
   }
   if (state.port <= 0) {
-    const int error = errno;
-    const std::string reason = error == 0 ? "the address is not one of this machine"
-                                          : std::system_category().message(error);
-    throw std::runtime_error("cannot listen on " + options.host + ":" +
-                             std::to_string(options.port) + ": " + reason);
+    const std::error_code error = errno == 0
+                                      ? std::make_error_code(std::errc::address_not_available)
+                                      : std::error_code(errno, std::system_category());
+    throw std::system_error(error,
+                            "cannot listen on " + options.host + ":" +
+                                std::to_string(options.port) + " (choose with --host, --port)");
   }
 }
 

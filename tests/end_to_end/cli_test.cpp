@@ -115,6 +115,22 @@ TEST_CASE("bad usage is exit code 2 with a sentence on standard error", "[end_to
   }
 }
 
+TEST_CASE("a file or address that cannot be used is exit code 2 and says why", "[end_to_end]") {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path / "no_database.db").string();
+  std::ofstream(file)
+      << "rubbish, long enough to be no header of a database at all, not even nearly so\n";
+  const Ran rubbish = repose(
+      "calibrate " REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json --db " + file,
+      "&1");
+  CHECK(rubbish.exit_code == 2);
+  CHECK_THAT(rubbish.output, Contains(file));
+  const Ran address =
+      repose("serve --host 192.0.2.1 --db " + (folder.path / "a.db").string(), "&1");
+  CHECK(address.exit_code == 2);
+  CHECK_THAT(address.output, Contains("cannot listen on 192.0.2.1") && Contains("--port"));
+}
+
 TEST_CASE("help and version are no errors", "[end_to_end]") {
   CHECK(repose("--help").exit_code == 0);
   CHECK(repose("evaluate --help").exit_code == 0);
