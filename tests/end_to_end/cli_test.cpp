@@ -22,7 +22,7 @@ struct Ran {
 
 /// Runs the program through the shell; standard error goes where `errors` says.
 Ran repose(const std::string& arguments, const std::string& errors = "/dev/null") {
-  const std::string command = std::string(REPOSE_PROGRAM) + " " + arguments + " 2>" + errors;
+  const std::string command = "'" REPOSE_PROGRAM "' " + arguments + " 2>" + errors;
   Ran ran;
   FILE* pipe = popen(command.c_str(), "r");
   REQUIRE(pipe != nullptr);
@@ -121,7 +121,7 @@ TEST_CASE("a file or address that cannot be used is exit code 2 and says why", "
   std::ofstream(file)
       << "rubbish, long enough to be no header of a database at all, not even nearly so\n";
   const Ran rubbish = repose(
-      "calibrate " REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json --db " + file,
+      "calibrate '" REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json' --db " + file,
       "&1");
   CHECK(rubbish.exit_code == 2);
   CHECK_THAT(rubbish.output, Contains(file));

@@ -41,9 +41,9 @@ std::filesystem::path slow_study(const TemporaryFolder& folder) {
 pid_t start(const std::filesystem::path& study,
             const std::filesystem::path& database,
             const std::filesystem::path& output) {
-  std::string command = std::string("exec ") + REPOSE_PROGRAM + " calibrate " + study.string() +
-                        " --db " + database.string() + " --no-pictures --json > " +
-                        output.string() + " 2>/dev/null";
+  std::string command = "exec '" REPOSE_PROGRAM "' calibrate " + study.string() + " --db " +
+                        database.string() + " --no-pictures --json > " + output.string() +
+                        " 2>/dev/null";
   std::string shell = "/bin/sh", flag = "-c";
   std::array<char*, 4> arguments{shell.data(), flag.data(), command.data(), nullptr};
   pid_t child = 0;

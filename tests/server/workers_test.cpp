@@ -111,7 +111,7 @@ TEST_CASE("a process that dies once is asked once more", "[server]") {
   db::Store store(folder / "a.db", db::Access::write);
   const auto program =
       script(folder,
-             "if [ -e " + (folder / "been").string() + " ]; then exec " + REPOSE_PROGRAM +
+             "if [ -e " + (folder / "been").string() + " ]; then exec '" REPOSE_PROGRAM "'" +
                  " answer; fi\n: > " + (folder / "been").string() + "\nkill -KILL $$");
   const auto evaluations =
       Workers(store, {.workers = 1, .program = program}).run(std::vector{drop(0.1)}, {}, {});
