@@ -1,4 +1,4 @@
-/// ContactBlock: 64 contacts side by side, a column per quantity; what effects read and write.
+/// ContactBlock: 32 contacts side by side, a column per quantity; what effects read and write.
 ///
 /// Conventions. A contact has two ends, i and j; at a wall, j is the wall. The normal points from j
 /// to i. Forces and torques are those on i; j receives the opposite force, and its own torque.
@@ -13,7 +13,7 @@
 ///                 shear_damping
 ///   rolling       roll, spins, elastic_force,        couple_x..z
 ///                 grip_force
-///   loads         all forces                         load_i, load_j
+///   loads         all forces                         force, torque_i, torque_j
 ///
 /// Lanes past the last contact hold two spheres that just touch, at rest: loops always run to
 /// `width`.
@@ -31,9 +31,9 @@ struct Period {
   double x = 0.0, y = 0.0;
 };
 
-/// Sixty-four contacts.
+/// Thirty-two contacts: few enough for the columns to stay in a processor's first cache.
 struct ContactBlock {
-  static constexpr int width = 64;
+  static constexpr int width = 32;
   using Column = std::array<double, width>;
 
   /// The grain (or wall point) at one end of each contact: columns of what its row has, in its
@@ -46,15 +46,14 @@ struct ContactBlock {
     alignas(64) Column wx, wy, wz;       ///< spin, rad/s
     alignas(64) Column inverse_inertia;  ///< 1/(kg m2)
   };
-  /// What the grain at one end receives.
-  struct Load {
-    alignas(64) Column fx, fy, fz;  ///< N
-    alignas(64) Column tx, ty, tz;  ///< about its centre, N m
+  struct Vector {
+    alignas(64) Column x, y, z;
   };
 
   End i, j;
-  Load load_i, load_j;
-  Period period;  ///< differences of x and y are those of the nearest images
+  Vector force;               ///< what end i receives; end j receives the opposite, N
+  Vector torque_i, torque_j;  ///< about the centres, N m
+  Period period;              ///< differences of x and y are those of the nearest images
 
   // Kinematics.
   alignas(64) Column normal_x, normal_y, normal_z;  ///< from j to i, of unit length

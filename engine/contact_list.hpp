@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/boundary.hpp"
+#include "engine/cell_grid.hpp"
 #include "engine/contact_block.hpp"
 #include "engine/grains.hpp"
 
@@ -22,7 +23,7 @@ struct Candidates {
   std::vector<std::uint32_t> i;      ///< row of end i
   std::vector<std::uint32_t> j;      ///< row of end j, or surface
   std::vector<std::uint8_t> closed;  ///< whether the contact was closed in the last step
-  std::vector<double> history;       ///< history_columns per candidate
+  std::vector<double> history;       ///< history_columns per candidate, and one number more
 
   [[nodiscard]] std::size_t size() const { return i.size(); }
 };
@@ -38,8 +39,12 @@ class ContactList {
                const Vec3& period,
                double horizon);
 
-  /// Whether some grain has moved by its skin since the last rebuild.
-  [[nodiscard]] bool outlived(const Grains& grains) const;
+  /// Where a grain was at the last rebuild.
+  struct Anchor {
+    double x, y, z;       ///< m
+    double skin_squared;  ///< m2
+  };
+  [[nodiscard]] std::span<const Anchor> anchors() const { return anchors_; }
 
   /// Follows rows that were taken out: new_row[k] is where row k went, or `gone`.
   void renumber(const std::vector<std::uint32_t>& new_row, std::uint32_t gone);
@@ -50,11 +55,6 @@ class ContactList {
   Candidates walls;
 
  private:
-  struct Anchor {
-    double x, y, z;
-    double skin_squared;
-  };
-
   /// Histories of the closed contacts by id of end i, while the rows are re-ordered.
   struct Memory {
     std::vector<std::uint32_t> start;  ///< first entry of each id
@@ -69,32 +69,13 @@ class ContactList {
               Candidates& candidates,
               const Grains& grains,
               Partner partner) const;
-  /// A grain as the search sees it, packed.
-  struct Spot {
-    double x, y, z;
-    double near;  ///< radius and skin
-    double skin;
-    std::uint32_t id;
-  };
-
-  void sort_by_cell(Grains& grains, const Vec3& period);
-  void find_pairs(const Grains& grains, const Vec3& period);
+  void find_pairs(const Grains& grains);
   void find_walls(const Grains& grains, std::span<const Surface> surfaces);
 
-  struct Grid {
-    Vec3 low, high;
-    double edge = 1.0;
-    int nx = 1, ny = 1, nz = 1;
-    std::vector<std::uint32_t> start;  ///< first row of each cell
-  };
-
   int history_columns_;
-  Grid grid_;
+  CellGrid grid_;
   std::vector<double> skins_;
-  double slowest_skin_ = 0.0;
-  std::vector<Spot> spots_;
   std::vector<Anchor> anchors_;
-  std::vector<std::uint32_t> cell_of_;
 };
 
 }  // namespace repose::engine

@@ -95,19 +95,15 @@ template <Partner partner>
     const double f = c.normal_force[i], arm_i = c.arm_i[i], arm_j = c.arm_j[i];
     const double mx = ny * tz - nz * ty, my = nz * tx - nx * tz, mz = nx * ty - ny * tx;
     const double cx = c.couple_x[i], cy = c.couple_y[i], cz = c.couple_z[i];
-    const double fx = f * nx + tx, fy = f * ny + ty, fz = f * nz + tz;
-    c.load_i.fx[i] = fx;
-    c.load_i.fy[i] = fy;
-    c.load_i.fz[i] = fz;
-    c.load_i.tx[i] = cx - arm_i * mx;
-    c.load_i.ty[i] = cy - arm_i * my;
-    c.load_i.tz[i] = cz - arm_i * mz;
-    c.load_j.fx[i] = -fx;
-    c.load_j.fy[i] = -fy;
-    c.load_j.fz[i] = -fz;
-    c.load_j.tx[i] = -cx - arm_j * mx;
-    c.load_j.ty[i] = -cy - arm_j * my;
-    c.load_j.tz[i] = -cz - arm_j * mz;
+    c.force.x[i] = f * nx + tx;
+    c.force.y[i] = f * ny + ty;
+    c.force.z[i] = f * nz + tz;
+    c.torque_i.x[i] = cx - arm_i * mx;
+    c.torque_i.y[i] = cy - arm_i * my;
+    c.torque_i.z[i] = cz - arm_i * mz;
+    c.torque_j.x[i] = -cx - arm_j * mx;
+    c.torque_j.y[i] = -cy - arm_j * my;
+    c.torque_j.z[i] = -cz - arm_j * mz;
   }
 }
 
@@ -123,19 +119,12 @@ template <std::size_t I>
   }
 }
 
-}  // namespace
-
-// Active effects in catalogue order. The only place where laws are composed.
-REPOSE_ANY_MACHINE
-void apply(
-    const PairLaw& law, Partner partner, ContactBlock& block, HistoryBlock history, double dt) {
+/// Active effects in catalogue order. The only place where laws are composed.
+template <Partner partner>
+inline void apply_to(const PairLaw& law, ContactBlock& block, HistoryBlock history, double dt) {
   block.modulus = law.elastic.modulus;
   block.shear_modulus = law.elastic.shear_modulus;
-  if (partner == Partner::grain) {
-    kinematics<Partner::grain>(block);
-  } else {
-    kinematics<Partner::wall>(block);
-  }
+  kinematics<partner>(block);
   hertz(block);
   for (auto* column : {&block.shear_damping,
                        &block.tangent_x,
@@ -151,6 +140,17 @@ void apply(
   };
   fold(std::make_index_sequence<effect_count>{});
   sum_loads(block);
+}
+
+}  // namespace
+
+void apply(
+    const PairLaw& law, Partner partner, ContactBlock& block, HistoryBlock history, double dt) {
+  if (partner == Partner::grain) {
+    AnyMachine<apply_to<Partner::grain>>::call(law, block, history, dt);
+  } else {
+    AnyMachine<apply_to<Partner::wall>>::call(law, block, history, dt);
+  }
 }
 
 namespace {

@@ -26,7 +26,9 @@ struct alignas(32) GrainRow {
 /// Force and torque on one grain during a step: one cache line.
 struct alignas(64) GrainLoad {
   double fx = 0.0, fy = 0.0, fz = 0.0;  ///< N
+  double no_force = 0.0;                ///< a fourth, so that both are quads
   double tx = 0.0, ty = 0.0, tz = 0.0;  ///< N m
+  double no_torque = 0.0;
 };
 
 struct Grains {

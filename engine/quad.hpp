@@ -18,6 +18,22 @@ using Quad [[gnu::vector_size(32)]] = double;
   std::memcpy(to, &q, sizeof q);
 }
 
+[[gnu::always_inline]] inline Quad fill_quad(double value) {
+  return Quad{value, value, value, value};
+}
+
+/// What a comparison of quads gives: all bits of a lane set, or none.
+using QuadMask = decltype(Quad{} < Quad{});
+
+/// A comparison's lanes as the lowest bits of a number.
+[[gnu::always_inline]] inline unsigned bits_of(const QuadMask& mask) {
+  using Bytes [[gnu::vector_size(4)]] = signed char;
+  const Bytes bytes = __builtin_convertvector(mask, Bytes);
+  unsigned word = 0;
+  std::memcpy(&word, &bytes, sizeof word);
+  return ((word & 0x08040201U) * 0x01010101U) >> 24U;
+}
+
 /// Rows of a four by four square to its columns.
 [[gnu::always_inline]] inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
   const Quad ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6);

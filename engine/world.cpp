@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/any_machine.hpp"
-#include "engine/quad.hpp"
+#include "engine/lanes.hpp"
+#include "engine/motion.hpp"
+#include "engine/pair_pass.hpp"
 
 namespace repose::engine {
 
@@ -27,84 +28,6 @@ double image(double d, double period, double half_period) {
   d -= d > half_period ? period : 0.0;
   d += d < -half_period ? period : 0.0;
   return d;
-}
-
-/// A candidate's history to its lane of a block, and back. Most laws carry three columns or six.
-template <int columns>
-void gather_columns(const double* from, int lane, double* to) {
-  for (int q = 0; q < columns; ++q) to[q * width + lane] = from[q];
-}
-template <int columns>
-void scatter_columns(double* to, int lane, const double* from) {
-  for (int q = 0; q < columns; ++q) to[q] = from[q * width + lane];
-}
-
-void gather_history(const Candidates& c, int columns, std::uint32_t k, int lane, double* to) {
-  const double* from = c.history.data() + static_cast<std::size_t>(k) * columns;
-  int q = 0;
-  for (; q + 3 <= columns; q += 3) gather_columns<3>(from + q, lane, to + q * width);
-  for (; q < columns; ++q) gather_columns<1>(from + q, lane, to + q * width);
-}
-
-void scatter_history(Candidates& c, int columns, std::uint32_t k, int lane, const double* from) {
-  double* to = c.history.data() + static_cast<std::size_t>(k) * columns;
-  int q = 0;
-  for (; q + 3 <= columns; q += 3) scatter_columns<3>(to + q, lane, from + q * width);
-  for (; q < columns; ++q) scatter_columns<1>(to + q, lane, from + q * width);
-}
-
-/// History of lanes that no contact uses.
-void clear_idle_lanes(int count, int columns, double* history) {
-  for (int q = 0; q < columns && count < width; ++q) {
-    std::fill(history + q * width + count, history + (q + 1) * width, 0.0);
-  }
-}
-
-constexpr int quad = 4;
-static_assert(sizeof(GrainRow) == 12 * sizeof(double) && width % quad == 0);
-
-/// What stands in the lanes past the last contact: two equal spheres that just touch, at rest.
-constexpr GrainRow idle_i{.z = 1.0, .radius = 0.5, .inverse_mass = 1.0};
-constexpr GrainRow idle_j{.radius = 0.5, .inverse_mass = 1.0};
-
-/// Four rows to four lanes of the columns of an end.
-[[gnu::always_inline]] inline void to_lanes(const std::array<const GrainRow*, quad>& rows,
-                                            ContactBlock::End& end,
-                                            int lane) {
-  const std::array columns{&end.x, &end.vx, &end.wx};
-  const std::array firsts{&GrainRow::x, &GrainRow::vx, &GrainRow::wx};
-  for (std::size_t part = 0; part < columns.size(); ++part) {
-    Quad a = load_quad(&(rows[0]->*firsts[part]));
-    Quad b = load_quad(&(rows[1]->*firsts[part]));
-    Quad c = load_quad(&(rows[2]->*firsts[part]));
-    Quad d = load_quad(&(rows[3]->*firsts[part]));
-    transpose(a, b, c, d);
-    double* const to = columns[part]->data() + lane;
-    store_quad(to, a);
-    store_quad(to + width, b);
-    store_quad(to + 2 * width, c);
-    store_quad(to + 3 * width, d);
-  }
-}
-
-/// Copies the rows at both ends of a block's pairs to its columns.
-REPOSE_ANY_MACHINE
-void gather_ends(ContactBlock& c,
-                 const std::uint32_t* block,
-                 const Candidates& p,
-                 const GrainRow* rows) {
-  for (int lane = 0; lane < width; lane += quad) {
-    std::array<const GrainRow*, quad> i{};
-    std::array<const GrainRow*, quad> j{};
-    for (int q = 0; q < quad; ++q) {
-      const bool idle = lane + q >= c.count;
-      const std::uint32_t k = idle ? 0 : block[lane + q];
-      i[static_cast<std::size_t>(q)] = idle ? &idle_i : rows + p.i[k];
-      j[static_cast<std::size_t>(q)] = idle ? &idle_j : rows + p.j[k];
-    }
-    to_lanes(i, c.i, lane);
-    to_lanes(j, c.j, lane);
-  }
 }
 
 /// A point of a wall as the other end of a contact: no size, no spin, no give.
@@ -129,45 +52,6 @@ void clear_wall_ends(ContactBlock::End& end, int count) {
   for (int lane = 0; lane < width; ++lane) {
     end.radius[lane] = lane < count ? 0.0 : idle_j.radius;
     end.inverse_mass[lane] = lane < count ? 0.0 : idle_j.inverse_mass;
-  }
-}
-
-/// Adds four lanes of loads to the grains they belong to.
-[[gnu::always_inline]] inline void from_lanes(const ContactBlock::Load& load,
-                                              int lane,
-                                              std::array<Quad, quad>& force,
-                                              std::array<Quad, quad>& torque) {
-  const double* const from = load.fx.data() + lane;
-  for (int q = 0; q < quad; ++q) force[static_cast<std::size_t>(q)] = load_quad(from + q * width);
-  torque[0] = load_quad(from + 4 * width);
-  torque[1] = load_quad(from + 5 * width);
-  torque[2] = torque[3] = Quad{0.0, 0.0, 0.0, 0.0};
-  transpose(force[0], force[1], force[2], force[3]);
-  transpose(torque[0], torque[1], torque[2], torque[3]);
-}
-
-[[gnu::always_inline]] inline void receive(GrainLoad& load, const Quad& first, const Quad& second) {
-  store_quad(&load.fx, load_quad(&load.fx) + first);
-  store_quad(&load.ty, load_quad(&load.ty) + second);
-}
-
-/// Adds a block's loads to the grains at both ends, in the order of the contacts.
-REPOSE_ANY_MACHINE
-void scatter_loads(const ContactBlock& c,
-                   const std::uint32_t* block,
-                   const Candidates& p,
-                   GrainLoad* loads) {
-  std::array<Quad, quad> force_i{}, torque_i{}, force_j{}, torque_j{};
-  for (int lane = 0; lane < c.count; lane += quad) {
-    from_lanes(c.load_i, lane, force_i, torque_i);
-    from_lanes(c.load_j, lane, force_j, torque_j);
-    const int lanes = std::min(quad, c.count - lane);
-    for (int q = 0; q < lanes; ++q) {
-      const std::uint32_t k = block[lane + q];
-      const auto n = static_cast<std::size_t>(q);
-      receive(loads[p.i[k]], force_i[n], torque_i[n]);
-      receive(loads[p.j[k]], force_j[n], torque_j[n]);
-    }
   }
 }
 
@@ -245,31 +129,6 @@ void World::rebuild() {
   ++rebuilds_;
 }
 
-void World::find_closed_pairs() {
-  Candidates& p = list_.pairs;
-  const std::size_t n = p.size();
-  const int columns = list_.history_columns();
-  const Vec3 period = options_.period;
-  const double half_x = half(period.x), half_y = half(period.y);
-  closed_pairs_.resize(n + 1);
-  std::size_t closed = 0;
-  const GrainRow* const rows = grains_.rows.data();
-  for (std::uint32_t k = 0; k < n; ++k) {
-    const GrainRow& a = rows[p.i[k]];
-    const GrainRow& b = rows[p.j[k]];
-    const double dx = image(a.x - b.x, period.x, half_x);
-    const double dy = image(a.y - b.y, period.y, half_y);
-    const double dz = a.z - b.z;
-    const double reach = a.radius + b.radius;
-    const bool touches = dx * dx + dy * dy + dz * dz < reach * reach;
-    closed_pairs_[closed] = k;
-    closed += touches ? 1 : 0;
-    if (!touches && p.closed[k] != 0) open(p, columns, k);
-  }
-  closed_pairs_.resize(closed);
-  closed_ += closed;
-}
-
 void World::find_closed_walls() {
   Candidates& w = list_.walls;
   for (auto& closed : closed_walls_) closed.clear();
@@ -288,27 +147,16 @@ void World::find_closed_walls() {
 }
 
 void World::push_pairs() {
-  Candidates& p = list_.pairs;
-  const PairLaw& law = model_.law(MaterialId::grain);
-  const int columns = list_.history_columns();
-  ContactBlock& c = *block_;
-  c.period = {options_.period.x, options_.period.y};
-  alignas(64) std::array<double, width * most_history_columns> history;
-  for (std::size_t first = 0; first < closed_pairs_.size(); first += width) {
-    c.count = static_cast<int>(std::min<std::size_t>(width, closed_pairs_.size() - first));
-    const std::uint32_t* const block = closed_pairs_.data() + first;
-    gather_ends(c, block, p, grains_.rows.data());
-    for (int lane = 0; lane < c.count; ++lane) {
-      gather_history(p, columns, block[lane], lane, history.data());
-    }
-    clear_idle_lanes(c.count, columns, history.data());
-    apply(law, Partner::grain, c, HistoryBlock(history.data()), options_.time_step);
-    scatter_loads(c, block, p, grains_.loads.data());
-    for (int lane = 0; lane < c.count; ++lane) {
-      p.closed[block[lane]] = 1;
-      scatter_history(p, columns, block[lane], lane, history.data());
-    }
-  }
+  PairPass pass{.law = model_.law(MaterialId::grain),
+                .period = {options_.period.x, options_.period.y},
+                .dt = options_.time_step,
+                .rows = grains_.rows.data(),
+                .loads = grains_.loads.data(),
+                .candidates = list_.pairs,
+                .history_columns = list_.history_columns(),
+                .block = *block_};
+  engine::push_pairs(pass);
+  closed_ += pass.closed;
 }
 
 void World::push_walls() {
@@ -322,76 +170,60 @@ void World::push_walls() {
     for (std::size_t first = 0; first < closed.size(); first += width) {
       c.count = static_cast<int>(std::min<std::size_t>(width, closed.size() - first));
       const ClosedWall* const block = closed.data() + first;
-      for (int lane = 0; lane < width; lane += quad) {
-        std::array<const GrainRow*, quad> rows{};
-        for (int q = 0; q < quad; ++q) {
+      for (int lane = 0; lane < c.count; lane += lanes_at_once) {
+        std::array<const GrainRow*, 4> rows{};
+        std::array<std::uint32_t, 4> k{};
+        for (int q = 0; q < lanes_at_once; ++q) {
           const bool idle = lane + q >= c.count;
-          rows[static_cast<std::size_t>(q)] =
-              idle ? &idle_i : &grains_.rows[w.i[block[lane + q].candidate]];
+          const auto n = static_cast<std::size_t>(q);
+          k[n] = block[idle ? lane : lane + q].candidate;
+          rows[n] = idle ? &idle_i : &grains_.rows[w.i[k[n]]];
         }
         to_lanes(rows, c.i, lane);
+        history_to_lanes(w.history.data(), columns, k, lane, history.data());
       }
+      idle_rest(c, columns, history.data());
       clear_wall_ends(c.j, c.count);
       for (int lane = 0; lane < c.count; ++lane) {
         const std::uint32_t k = block[lane].candidate;
         const Vec3 point = grains_.rows[w.i[k]].centre() - block[lane].offset;
         set_wall_end(c.j, lane, point, surfaces_[w.j[k]].velocity);
       }
-      for (int lane = 0; lane < c.count; ++lane) {
-        gather_history(w, columns, block[lane].candidate, lane, history.data());
-      }
-      clear_idle_lanes(c.count, columns, history.data());
       apply(law, Partner::wall, c, HistoryBlock(history.data()), options_.time_step);
       for (int lane = 0; lane < c.count; ++lane) {
         const std::uint32_t k = block[lane].candidate;
         GrainLoad& load = grains_.loads[w.i[k]];
-        load.fx += c.load_i.fx[lane];
-        load.fy += c.load_i.fy[lane];
-        load.fz += c.load_i.fz[lane];
-        load.tx += c.load_i.tx[lane];
-        load.ty += c.load_i.ty[lane];
-        load.tz += c.load_i.tz[lane];
+        load.fx += c.force.x[lane];
+        load.fy += c.force.y[lane];
+        load.fz += c.force.z[lane];
+        load.tx += c.torque_i.x[lane];
+        load.ty += c.torque_i.y[lane];
+        load.tz += c.torque_i.z[lane];
         w.closed[k] = 1;
-        scatter_history(w, columns, k, lane, history.data());
+        history_from_lane(history.data(), lane, w.history.data(), columns, k);
       }
     }
   }
 }
 
-/// Velocities half a step behind positions (leapfrog): kick, then drift.
-void World::integrate() {
-  const double dt = options_.time_step;
-  const Vec3 g = gravity_;
-  for (std::size_t k = 0; k < grains_.size(); ++k) {
-    GrainRow& a = grains_.rows[k];
-    GrainLoad& load = grains_.loads[k];
-    const double push = a.inverse_mass * dt, turn = a.inverse_inertia * dt;
-    a.vx += load.fx * push + g.x * dt;
-    a.vy += load.fy * push + g.y * dt;
-    a.vz += load.fz * push + g.z * dt;
-    a.wx += load.tx * turn;
-    a.wy += load.ty * turn;
-    a.wz += load.tz * turn;
-    a.x += a.vx * dt;
-    a.y += a.vy * dt;
-    a.z += a.vz * dt;
-    load = {};
-  }
+void World::move() {
+  Motion motion{gravity_, options_.time_step, grains_, list_.anchors().data()};
+  advance(motion);
+  stale_ = motion.outlived;
 }
 
 void World::step() {
-  if (stale_ || list_.outlived(grains_)) rebuild();
+  if (stale_) rebuild();
   closed_ = 0;
-  find_closed_pairs();
-  find_closed_walls();
   push_pairs();
+  find_closed_walls();
   push_walls();
   if (turn_rate_ != 0.0) {
     const double angle = turn_rate_ * (time_ - turn_start_);
     const double g = norm(options_.gravity);
     gravity_ = {g * std::sin(angle), 0.0, -g * std::cos(angle)};
   }
-  integrate();
+  move();
   time_ += options_.time_step;
   ++steps_;
   grain_steps_ += grains_.size();

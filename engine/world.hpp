@@ -49,7 +49,10 @@ class World {
 
   [[nodiscard]] const Grains& grains() const { return grains_; }
   /// Mutable access for tests and experiments that set a grain's motion.
-  GrainRow& row(std::size_t index) { return grains_.rows[index]; }
+  GrainRow& row(std::size_t index) {
+    stale_ = true;
+    return grains_.rows[index];
+  }
   [[nodiscard]] const ContactModel& model() const { return model_; }
   [[nodiscard]] const Vec3& period() const { return options_.period; }
   [[nodiscard]] double time() const { return time_; }
@@ -77,11 +80,10 @@ class World {
   };
 
   void rebuild();
-  void find_closed_pairs();
   void find_closed_walls();
   void push_pairs();
   void push_walls();
-  void integrate();
+  void move();
 
   ContactModel model_;
   WorldOptions options_;
@@ -91,7 +93,6 @@ class World {
   Grains grains_;
   std::vector<Surface> surfaces_;
   ContactList list_;
-  std::vector<std::uint32_t> closed_pairs_;              ///< candidates that touch now
   std::array<std::vector<ClosedWall>, 2> closed_walls_;  ///< the same by the wall's material
   std::unique_ptr<ContactBlock> block_;
   bool stale_ = true;  ///< the list must be made anew

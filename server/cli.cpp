@@ -7,10 +7,12 @@
 #include <iostream>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "db/store.hpp"
+#include "engine/any_machine.hpp"
 #include "engine/catalogue.hpp"
 #include "engine/evaluate.hpp"
 #include "server/cli/commands.hpp"
@@ -239,6 +241,17 @@ int run_command_line(int argc, const char* const* argv) {
   app.set_version_flag("--version", "repose " + std::string(engine::version()));
   app.require_subcommand(1);
   app.footer(main_footer);
+  app.add_option_function<std::string>(
+         "--instruction-set",
+         [](const std::string& name) {
+           const auto found = std::ranges::find(engine::instruction_set_names, name);
+           engine::use_instruction_set(
+               static_cast<engine::InstructionSet>(found - engine::instruction_set_names.begin()));
+         },
+         "Use no better one than this; answers have the same bits on all")
+      ->check(CLI::IsMember(std::vector<std::string>(engine::instruction_set_names.begin(),
+                                                     engine::instruction_set_names.end())))
+      ->envname("REPOSE_INSTRUCTION_SET");
   Commands commands;
   Work work;
   add_evaluate(app, commands.evaluate, work);

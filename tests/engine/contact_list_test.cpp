@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "engine/motion.hpp"
 #include "engine/random.hpp"
 
 using namespace repose::engine;
@@ -84,14 +85,13 @@ TEST_CASE("the list stays complete until a grain has moved by its skin", "[engin
   for (GrainRow& row : grains.rows) {
     row.vy = random.uniform(-0.3, 0.3);
   }
+  grains.loads.resize(grains.size());
+  Motion motion{{}, dt, grains, list.anchors().data()};
   int valid = 0;
-  while (!list.outlived(grains)) {
+  while (!motion.outlived) {
     const Names names = listed(list, grains);
     for (const auto& name : overlapping(grains, {})) REQUIRE(names.count(name) == 1);
-    for (GrainRow& row : grains.rows) {
-      row.x += row.vx * dt;
-      row.y += row.vy * dt;
-    }
+    advance(motion);
     ++valid;
   }
   CHECK(valid > 1);

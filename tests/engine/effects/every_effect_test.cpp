@@ -122,10 +122,10 @@ TEST_CASE("torques about the contact point balance under every effect", "[engine
     for (int i = 0; i < ContactBlock::width; ++i) {
       // Angular momentum about centre j: torque i + torque j + (arm_i + arm_j) n x F = 0.
       const Vec3 n{c.normal_x[i], c.normal_y[i], c.normal_z[i]};
-      const Vec3 force{c.load_i.fx[i], c.load_i.fy[i], c.load_i.fz[i]};
-      const Vec3 sum = Vec3{c.load_i.tx[i] + c.load_j.tx[i],
-                            c.load_i.ty[i] + c.load_j.ty[i],
-                            c.load_i.tz[i] + c.load_j.tz[i]} +
+      const Vec3 force{c.force.x[i], c.force.y[i], c.force.z[i]};
+      const Vec3 sum = Vec3{c.torque_i.x[i] + c.torque_j.x[i],
+                            c.torque_i.y[i] + c.torque_j.y[i],
+                            c.torque_i.z[i] + c.torque_j.z[i]} +
                        (c.arm_i[i] + c.arm_j[i]) * cross(n, force);
       CHECK(norm(sum) <= 1e-12 * (norm(force) * c.arm_i[i] + 1e-30));
     }

@@ -1,0 +1,154 @@
+#include "engine/pair_pass.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/any_machine.hpp"
+#include "engine/lanes.hpp"
+
+namespace repose::engine {
+
+namespace {
+
+constexpr int width = ContactBlock::width;
+
+/// Contacts that wait until they fill a block.
+struct Waiting {
+  std::array<std::uint32_t, width + lanes_at_once> candidates{};
+  int count = 0;
+};
+
+/// Periods and half periods as quads; half is beyond any distance where there is no period.
+struct Sides {
+  Quad x, y, half_x, half_y;
+};
+
+Sides sides_of(const Period& period) {
+  const auto half = [](double p) {
+    return p > 0.0 ? 0.5 * p : std::numeric_limits<double>::infinity();
+  };
+  return {fill_quad(period.x),
+          fill_quad(period.y),
+          fill_quad(half(period.x)),
+          fill_quad(half(period.y))};
+}
+
+/// Differences of a coordinate to those of the nearest images.
+[[gnu::always_inline]] inline void to_nearest(Quad& d, const Quad& period, const Quad& half) {
+  const Quad none = fill_quad(0.0);
+  d -= d > half ? period : none;
+  d += d < -half ? period : none;
+}
+
+/// Which of four pairs of rows overlap, as bits.
+[[gnu::always_inline]] inline unsigned overlapping(const GrainRow* rows,
+                                                   const std::uint32_t* i,
+                                                   const std::uint32_t* j,
+                                                   const Sides& sides) {
+  const Quad sign{1.0, 1.0, 1.0, -1.0};  // differences of the coordinates, sum of the radii
+  const auto pair = [&](int q) {
+    return load_quad(&rows[i[q]].x) - sign * load_quad(&rows[j[q]].x);
+  };
+  Quad x = pair(0), y = pair(1), z = pair(2), reach = pair(3);
+  transpose(x, y, z, reach);
+  to_nearest(x, sides.x, sides.half_x);
+  to_nearest(y, sides.y, sides.half_y);
+  return bits_of(x * x + y * y + z * z < reach * reach);
+}
+
+/// Forgets the contact of a candidate that has opened.
+void open(Candidates& c, int columns, std::uint32_t k) {
+  c.closed[k] = 0;
+  std::fill_n(c.history.begin() + static_cast<std::ptrdiff_t>(k) * columns, columns, 0.0);
+}
+
+/// Applies the law to the first contacts that wait, at most a block of them.
+[[gnu::always_inline]] inline void push_block(PairPass& p, Waiting& waiting) {
+  ContactBlock& c = p.block;
+  c.count = std::min(waiting.count, width);
+  alignas(64) std::array<double, width * most_history_columns> history;
+  Candidates& all = p.candidates;
+  for (int lane = 0; lane < c.count; lane += lanes_at_once) {
+    std::array<const GrainRow*, 4> i{};
+    std::array<const GrainRow*, 4> j{};
+    std::array<std::uint32_t, 4> k{};
+    for (int q = 0; q < lanes_at_once; ++q) {
+      const auto n = static_cast<std::size_t>(q);
+      const bool idle = lane + q >= c.count;
+      k[n] = waiting.candidates[static_cast<std::size_t>(idle ? lane : lane + q)];
+      i[n] = idle ? &idle_i : p.rows + all.i[k[n]];
+      j[n] = idle ? &idle_j : p.rows + all.j[k[n]];
+    }
+    to_lanes(i, c.i, lane);
+    to_lanes(j, c.j, lane);
+    history_to_lanes(all.history.data(), p.history_columns, k, lane, history.data());
+  }
+  idle_rest(c, p.history_columns, history.data());
+  apply(p.law, Partner::grain, c, HistoryBlock(history.data()), p.dt);
+  for (int lane = 0; lane < c.count; lane += lanes_at_once) {
+    const auto force = from_lanes(c.force, lane);
+    const auto torque_i = from_lanes(c.torque_i, lane);
+    const auto torque_j = from_lanes(c.torque_j, lane);
+    const int lanes = std::min(lanes_at_once, c.count - lane);
+    for (int q = 0; q < lanes; ++q) {
+      const auto n = static_cast<std::size_t>(q);
+      const std::uint32_t k = waiting.candidates[static_cast<std::size_t>(lane + q)];
+      receive(p.loads[all.i[k]], force[n], torque_i[n]);
+      receive(p.loads[all.j[k]], -force[n], torque_j[n]);
+      all.closed[k] = 1;
+      history_from_lane(history.data(), lane + q, all.history.data(), p.history_columns, k);
+    }
+  }
+  waiting.count -= c.count;
+  std::copy_n(waiting.candidates.begin() + c.count, lanes_at_once, waiting.candidates.begin());
+}
+
+/// Tests up to four candidates, from `first` on, and has those wait that touch.
+[[gnu::always_inline]] inline void visit(PairPass& p,
+                                         Waiting& waiting,
+                                         const Sides& sides,
+                                         const std::uint32_t* i,
+                                         const std::uint32_t* j,
+                                         std::uint32_t first,
+                                         std::uint32_t count) {
+  const unsigned touching = overlapping(p.rows, i, j, sides);
+  for (std::uint32_t q = 0; q < count; ++q) {
+    const bool touches = (touching >> q & 1U) != 0;
+    waiting.candidates[static_cast<std::size_t>(waiting.count)] = first + q;
+    waiting.count += touches ? 1 : 0;
+    __builtin_prefetch(p.loads + j[q], 1);
+    if (!touches && p.candidates.closed[first + q] != 0) {
+      open(p.candidates, p.history_columns, first + q);
+    }
+  }
+}
+
+inline void push_all(PairPass& p) {
+  const Candidates& all = p.candidates;
+  const Sides sides = sides_of(p.period);
+  const auto n = static_cast<std::uint32_t>(all.size());
+  const std::uint32_t whole = n - n % lanes_at_once;
+  p.block.period = p.period;
+  Waiting waiting;
+  for (std::uint32_t first = 0; first < whole; first += lanes_at_once) {
+    visit(p, waiting, sides, all.i.data() + first, all.j.data() + first, first, lanes_at_once);
+    if (waiting.count < width) continue;
+    p.closed += width;
+    push_block(p, waiting);
+  }
+  std::array<std::uint32_t, 4> i{};
+  std::array<std::uint32_t, 4> j{};
+  std::copy(all.i.begin() + whole, all.i.end(), i.begin());
+  std::copy(all.j.begin() + whole, all.j.end(), j.begin());
+  if (n > 0) visit(p, waiting, sides, i.data(), j.data(), whole, n - whole);
+  while (waiting.count > 0) {
+    p.closed += static_cast<std::size_t>(std::min(waiting.count, width));
+    push_block(p, waiting);
+  }
+}
+
+}  // namespace
+
+void push_pairs(PairPass& pass) { AnyMachine<push_all>::call(pass); }
+
+}  // namespace repose::engine
