@@ -92,12 +92,15 @@ void CellGrid::fill_spots(const Grains& grains, std::span<const double> skins) {
   spots_.skin.assign(room, 0.0);
   largest_radius_ = 0.0;
   smallest_skin_ = std::numeric_limits<double>::max();
+  largest_skin_ = 0.0;
+  moved_.clear();
   for (std::size_t k = 0; k < n; ++k) {
     const double radius = grains.rows[k].radius;
     spots_.near[k] = radius + skins[k];
     spots_.skin[k] = skins[k];
     largest_radius_ = std::max(largest_radius_, radius);
     smallest_skin_ = std::min(smallest_skin_, skins[k]);
+    largest_skin_ = std::max(largest_skin_, skins[k]);
   }
 }
 
@@ -150,30 +153,22 @@ struct CellGrid::Search {
   }
 };
 
-inline void CellGrid::find_for(Search& s) {
-  const std::uint32_t a = s.row;
-  const double skin = spots_.skin[a];
-  // Its reach covers both skins.
-  const double reach = spots_.near[a] + largest_radius_ + skin;
+/// Shows the rows of every line of cells within reach of a search's grain.
+template <class See>
+inline void CellGrid::for_lines(const Search& s, double reach, const See& see) const {
   std::array<Runs, 3> r{};
   for (std::size_t place = 0; place < 3; ++place) {
-    const double at = spots_.at[place][a];
+    const double at = spots_.at[place][s.row];
     r[place] = runs(axes_[order_[place]], at - reach, at + reach);
-    s.at[place] = fill_quad(at);
   }
-  s.near = fill_quad(spots_.near[a]);
-  s.skin = fill_quad(skin);
-  const bool slowest = skin == smallest_skin_;  // finds no row before its own
   const auto cells = [this](std::size_t place) {
     return static_cast<std::size_t>(axes_[order_[place]].cells);
   };
   const auto line = [&](std::size_t before) {
     for (int part = 0; part < r[0].count; ++part) {
       const auto n = static_cast<std::size_t>(part);
-      const std::uint32_t first = start_[before + static_cast<std::size_t>(r[0].first[n])];
-      const std::uint32_t last = start_[before + static_cast<std::size_t>(r[0].last[n]) + 1];
-      if (!slowest && first <= a) s.scan<false>(spots_, first, std::min(last, a), pairs_);
-      if (last > a) s.scan<true>(spots_, std::max(first, a + 1), last, pairs_);
+      see(start_[before + static_cast<std::size_t>(r[0].first[n])],
+          start_[before + static_cast<std::size_t>(r[0].last[n]) + 1]);
     }
   };
   for (int slow = 0; slow < r[2].count; ++slow) {
@@ -189,18 +184,64 @@ inline void CellGrid::find_for(Search& s) {
   }
 }
 
-inline void CellGrid::find_all(CellGrid& grid, std::size_t grains) {
-  Search search{};
+inline void CellGrid::find_for(Search& s) {
+  const std::uint32_t a = s.row;
+  const double skin = spots_.skin[a];
+  for (std::size_t place = 0; place < 3; ++place) s.at[place] = fill_quad(spots_.at[place][a]);
+  s.near = fill_quad(spots_.near[a]);
+  s.skin = fill_quad(skin);
+  const bool slowest = skin == smallest_skin_;  // finds no row before its own
+  // Its reach covers both skins.
+  const double reach = spots_.near[a] + largest_radius_ + skin;
+  for_lines(s, reach, [&](std::uint32_t first, std::uint32_t last) {
+    if (!slowest && first <= a) s.scan<false>(spots_, first, std::min(last, a), pairs_);
+    if (last > a) s.scan<true>(spots_, std::max(first, a + 1), last, pairs_);
+  });
+}
+
+CellGrid::Search CellGrid::search() const {
+  Search s{};
   for (std::size_t place = 0; place < 3; ++place) {
-    const double period = grid.axes_[grid.order_[place]].period;
-    search.period[place] = fill_quad(period);
-    search.half[place] =
+    const double period = axes_[order_[place]].period;
+    s.period[place] = fill_quad(period);
+    s.half[place] =
         fill_quad(period > 0.0 ? 0.5 * period : std::numeric_limits<double>::infinity());
   }
+  return s;
+}
+
+inline void CellGrid::find_all(CellGrid& grid, std::size_t grains) {
+  Search search = grid.search();
   for (std::uint32_t row = 0; row < grains; ++row) {
     search.row = row;
     grid.find_for(search);
   }
+}
+
+void CellGrid::move(const Grains& grains, std::uint32_t row, double skin) {
+  for (std::size_t place = 0; place < 3; ++place) {
+    spots_.at[place][row] = grains.rows[row].*coordinates[order_[place]];
+  }
+  spots_.near[row] = grains.rows[row].radius + skin;
+  spots_.skin[row] = skin;
+  largest_skin_ = std::max(largest_skin_, skin);
+  moved_.push_back(row);
+}
+
+std::span<const CellGrid::Pair> CellGrid::near_pairs_of(std::uint32_t row) {
+  Search s = search();
+  s.row = row;
+  for (std::size_t place = 0; place < 3; ++place) s.at[place] = fill_quad(spots_.at[place][row]);
+  s.near = fill_quad(spots_.near[row]);
+  s.skin = fill_quad(std::numeric_limits<double>::infinity());  // finds all, whoever is faster
+  pairs_.clear();
+  const double reach = spots_.near[row] + largest_radius_ + largest_skin_;
+  for_lines(s, reach, [&](std::uint32_t first, std::uint32_t last) {
+    s.scan<true>(spots_, first, last, pairs_);
+  });
+  for (const std::uint32_t other : moved_) s.scan<true>(spots_, other, other + 1, pairs_);
+  std::erase_if(pairs_, [](const Pair& pair) { return pair.a == pair.b; });
+  return pairs_;
 }
 
 std::span<const CellGrid::Pair> CellGrid::near_pairs(const Grains& grains,

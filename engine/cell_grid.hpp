@@ -28,6 +28,14 @@ class CellGrid {
   /// sorted; the pairs are valid until the next call.
   std::span<const Pair> near_pairs(const Grains& grains, std::span<const double> skins);
 
+  /// A grain that has moved since the sort: where it is now, and its new skin, m.
+  void move(const Grains& grains, std::uint32_t row, double skin);
+
+  /// Finds every pair of one row nearer than the radii and skins of both; the row is a. Others are
+  /// looked for where they were when they were sorted or last moved; of those that were moved, each
+  /// is looked at.
+  std::span<const Pair> near_pairs_of(std::uint32_t row);
+
  private:
   struct Axis {
     double low = 0.0, width = 1.0;  ///< of the first cell, m
@@ -53,6 +61,9 @@ class CellGrid {
   void lay_out(const Grains& grains, const Vec3& period, double edge);
   void fill_spots(const Grains& grains, std::span<const double> skins);
   [[nodiscard]] Runs runs(const Axis& axis, double low, double high) const;
+  [[nodiscard]] Search search() const;
+  template <class See>
+  void for_lines(const Search& search, double reach, const See& see) const;
   void find_for(Search& search);
   static void find_all(CellGrid& grid, std::size_t grains);
 
@@ -63,6 +74,8 @@ class CellGrid {
   Spots spots_;
   double largest_radius_ = 0.0;
   double smallest_skin_ = 0.0;
+  double largest_skin_ = 0.0;
+  std::vector<std::uint32_t> moved_;  ///< rows whose cell may be another than that sorted
   std::vector<Pair> pairs_;
 };
 

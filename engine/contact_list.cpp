@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace repose::engine {
 
@@ -10,6 +11,15 @@ namespace {
 
 /// Smallest skin over the radius. A settled bed then lists little more than its contacts.
 constexpr double least_skin = 0.03;
+/// Grains looked at again before all are: enough to outlast a stream's impacts, few enough to keep
+/// the list short and ordered.
+constexpr std::size_t most_repaired = 128;
+
+bool is_near(const Surface& surface, const GrainRow& grain, double skin) {
+  const Vec3 d = offset_from(surface, grain.centre());
+  const double near = grain.radius + skin;
+  return dot(d, d) < near * near;
+}
 
 }  // namespace
 
@@ -77,10 +87,7 @@ void ContactList::find_walls(const Grains& grains, std::span<const Surface> surf
   walls.j.clear();
   for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
     for (std::uint32_t k = 0; k < grains.size(); ++k) {
-      const Vec3 centre = grains.rows[k].centre();
-      const Vec3 d = offset_from(surfaces[s], centre);
-      const double near = grains.rows[k].radius + skins_[k];
-      if (dot(d, d) >= near * near) continue;
+      if (!is_near(surfaces[s], grains.rows[k], skins_[k])) continue;
       walls.i.push_back(k);
       walls.j.push_back(s);
     }
@@ -95,21 +102,91 @@ void ContactList::rebuild(Grains& grains,
   const Memory wall_memory = remember(walls, grains, Partner::wall);
   double largest = 0.0;
   for (const GrainRow& g : grains.rows) largest = std::max(largest, g.radius);
-  const double slowest_skin = least_skin * largest;
+  slowest_skin_ = least_skin * largest;
   // Two slow grains of the largest size are always in neighbouring cells.
-  grid_.sort(grains, period, 2.0 * (largest + 2.0 * slowest_skin));
+  grid_.sort(grains, period, 2.0 * (largest + 2.0 * slowest_skin_));
   const std::size_t n = grains.size();
   skins_.resize(n);
   anchors_.resize(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const GrainRow& g = grains.rows[k];
-    skins_[k] = std::max(slowest_skin, norm(g.velocity()) * horizon);
-    anchors_[k] = {g.x, g.y, g.z, skins_[k] * skins_[k]};
-  }
+  repaired_ = 0;
+  for (std::size_t k = 0; k < n; ++k) anchor(grains.rows[k], k, horizon);
   find_pairs(grains);
   recall(pair_memory, pairs, grains, Partner::grain);
   find_walls(grains, surfaces);
   recall(wall_memory, walls, grains, Partner::wall);
+}
+
+void ContactList::anchor(const GrainRow& grain, std::size_t row, double horizon) {
+  skins_[row] = std::max(slowest_skin_, norm(grain.velocity()) * horizon);
+  anchors_[row] = {grain.x, grain.y, grain.z, skins_[row] * skins_[row]};
+}
+
+namespace {
+
+/// A pair of rows, or a row and a surface, as one number that sorts.
+std::uint64_t key(std::uint32_t i, std::uint32_t j) { return std::uint64_t{i} << 32U | j; }
+
+/// The candidates that have an end among the rows marked.
+std::vector<std::uint64_t> keys_of(const Candidates& candidates,
+                                   const std::vector<std::uint8_t>& marked,
+                                   Partner partner) {
+  std::vector<std::uint64_t> result;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const std::uint32_t i = candidates.i[k], j = candidates.j[k];
+    const unsigned other = partner == Partner::grain ? marked[j] : 0U;
+    if ((marked[i] | other) != 0) result.push_back(key(i, j));
+  }
+  return result;
+}
+
+}  // namespace
+
+void ContactList::append(Candidates& c, const std::vector<std::uint64_t>& found) {
+  for (const std::uint64_t each : found) {
+    c.i.push_back(static_cast<std::uint32_t>(each >> 32U));
+    c.j.push_back(static_cast<std::uint32_t>(each));
+  }
+  c.closed.resize(c.size(), 0);
+  c.history.resize(c.size() * static_cast<std::size_t>(history_columns_) + 1, 0.0);
+}
+
+bool ContactList::repair(const Grains& grains, std::span<const Surface> surfaces, double horizon) {
+  const auto n = static_cast<std::uint32_t>(grains.size());
+  std::vector<std::uint32_t> escaped;
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const Anchor& a = anchors_[k];
+    const Vec3 d = grains.rows[k].centre() - Vec3{a.x, a.y, a.z};
+    if (dot(d, d) > a.skin_squared) escaped.push_back(k);
+  }
+  repaired_ += escaped.size();
+  if (repaired_ > most_repaired) return false;
+  std::vector<std::uint8_t> marked(n, 0);
+  for (const std::uint32_t k : escaped) {
+    marked[k] = 1;
+    anchor(grains.rows[k], k, horizon);
+    grid_.move(grains, k, skins_[k]);
+  }
+  std::vector<std::uint64_t> near, near_walls;
+  for (const std::uint32_t k : escaped) {
+    for (const auto [a, b] : grid_.near_pairs_of(k)) {
+      near.push_back(grains.ids[a] < grains.ids[b] ? key(a, b) : key(b, a));
+    }
+    for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
+      if (is_near(surfaces[s], grains.rows[k], skins_[k])) near_walls.push_back(key(k, s));
+    }
+  }
+  const auto add_new = [&](std::vector<std::uint64_t>& found, Candidates& list, Partner partner) {
+    std::vector<std::uint64_t> known = keys_of(list, marked, partner);
+    std::ranges::sort(known);
+    std::ranges::sort(found);
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    std::vector<std::uint64_t> fresh;
+    std::ranges::set_difference(found, known, std::back_inserter(fresh));
+    append(list, fresh);
+  };
+  add_new(near, pairs, Partner::grain);
+  add_new(near_walls, walls, Partner::wall);
+  return true;
 }
 
 void ContactList::renumber(const std::vector<std::uint32_t>& new_row, std::uint32_t gone) {

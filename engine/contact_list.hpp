@@ -39,7 +39,11 @@ class ContactList {
                const Vec3& period,
                double horizon);
 
-  /// Where a grain was at the last rebuild.
+  /// Looks again at the few grains that have moved by their skins, so that the list is valid once
+  /// more. False, and nothing changed, when they are too many: then rebuild.
+  bool repair(const Grains& grains, std::span<const Surface> surfaces, double horizon);
+
+  /// Where a grain was when it was last looked at.
   struct Anchor {
     double x, y, z;       ///< m
     double skin_squared;  ///< m2
@@ -70,11 +74,16 @@ class ContactList {
               const Grains& grains,
               Partner partner) const;
   void find_pairs(const Grains& grains);
+  /// Where a grain is now; its skin starts anew.
+  void anchor(const GrainRow& grain, std::size_t row, double horizon);
+  void append(Candidates& candidates, const std::vector<std::uint64_t>& found);
   void find_walls(const Grains& grains, std::span<const Surface> surfaces);
 
   int history_columns_;
   CellGrid grid_;
+  double slowest_skin_ = 0.0;
   std::vector<double> skins_;
+  std::size_t repaired_ = 0;  ///< grains looked at again since the last rebuild
   std::vector<Anchor> anchors_;
 };
 

@@ -209,11 +209,12 @@ void World::push_walls() {
 void World::move() {
   Motion motion{gravity_, options_.time_step, grains_, list_.anchors().data()};
   advance(motion);
-  stale_ = motion.outlived;
+  outlived_ = motion.outlived;
 }
 
 void World::step() {
-  if (stale_) rebuild();
+  const double horizon = horizon_steps * options_.time_step;
+  if (stale_ || (outlived_ && !list_.repair(grains_, surfaces_, horizon))) rebuild();
   closed_ = 0;
   push_pairs();
   find_closed_walls();

@@ -95,7 +95,8 @@ class World {
   ContactList list_;
   std::array<std::vector<ClosedWall>, 2> closed_walls_;  ///< the same by the wall's material
   std::unique_ptr<ContactBlock> block_;
-  bool stale_ = true;  ///< the list must be made anew
+  bool stale_ = true;      ///< the list must be made anew
+  bool outlived_ = false;  ///< some grain has moved by its skin
   double time_ = 0.0;
   std::uint64_t steps_ = 0;
   std::uint64_t grain_steps_ = 0;

@@ -97,6 +97,42 @@ TEST_CASE("the list stays complete until a grain has moved by its skin", "[engin
   CHECK(valid > 1);
 }
 
+TEST_CASE("a list that is repaired as grains are kicked stays complete", "[engine]") {
+  for (const Vec3 period : {Vec3{}, Vec3{0.04, 0.04, 0.0}}) {
+    Grains grains = scattered(400, 0.04, 0.6, 11);
+    for (GrainRow& row : grains.rows) row.vx = 0.0;
+    const std::vector<Surface> walls{plane(0.02)};
+    const double dt = 1e-4, horizon = 10 * dt;
+    ContactList list(3);
+    list.rebuild(grains, walls, period, horizon);
+    Random random(1, Purpose::grain_velocity);
+    int repairs = 0;
+    for (int step = 0; step < 150; ++step) {
+      GrainRow& kicked = grains.rows[static_cast<std::size_t>(random.uniform(0.0, 399.99))];
+      kicked.vx = random.uniform(-2.0, 2.0);
+      kicked.vz = random.uniform(-2.0, 2.0);
+      Motion motion{{}, dt, grains, list.anchors().data()};
+      advance(motion);
+      if (motion.outlived) {
+        const bool repaired = list.repair(grains, walls, horizon);
+        repairs += repaired ? 1 : 0;
+        if (!repaired) list.rebuild(grains, walls, period, horizon);
+      }
+      const Names names = listed(list, grains);
+      for (const auto& name : overlapping(grains, period)) REQUIRE(names.count(name) == 1);
+      std::set<std::uint32_t> at_wall(list.walls.i.begin(), list.walls.i.end());
+      REQUIRE(at_wall.size() == list.walls.size());
+      for (std::uint32_t k = 0; k < grains.size(); ++k) {
+        const GrainRow& row = grains.rows[k];
+        if (std::abs(row.z - 0.02) < row.radius) REQUIRE(at_wall.count(k) == 1);
+      }
+      REQUIRE(list.pairs.closed.size() == list.pairs.size());
+      REQUIRE(list.pairs.history.size() == 3 * list.pairs.size() + 1);
+    }
+    CHECK(repairs > 20);
+  }
+}
+
 TEST_CASE("history follows a contact through a rebuild that re-orders the rows", "[engine]") {
   Grains grains = scattered(500, 0.04, 0.8, 3);
   ContactList list(3);
