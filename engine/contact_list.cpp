@@ -72,6 +72,21 @@ void ContactList::find_pairs(const Grains& grains) {
   }
 }
 
+void ContactList::drop_pairs_within_bodies(const Grains& grains,
+                                           std::span<const std::uint32_t> body_of_id) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const std::uint32_t i = grains.ids[pairs.i[k]], j = grains.ids[pairs.j[k]];
+    const bool in_clumps = i < body_of_id.size() && j < body_of_id.size();
+    if (in_clumps && body_of_id[i] != no_body && body_of_id[i] == body_of_id[j]) continue;
+    pairs.i[kept] = pairs.i[k];
+    pairs.j[kept] = pairs.j[k];
+    ++kept;
+  }
+  pairs.i.resize(kept);
+  pairs.j.resize(kept);
+}
+
 void ContactList::find_walls(const Grains& grains, std::span<const Surface> surfaces) {
   walls.i.clear();
   walls.j.clear();
@@ -90,7 +105,8 @@ void ContactList::find_walls(const Grains& grains, std::span<const Surface> surf
 void ContactList::rebuild(Grains& grains,
                           std::span<const Surface> surfaces,
                           const Vec3& period,
-                          double horizon) {
+                          double horizon,
+                          std::span<const std::uint32_t> body_of_id) {
   const Memory pair_memory = remember(pairs, grains, Partner::grain);
   const Memory wall_memory = remember(walls, grains, Partner::wall);
   double largest = 0.0;
@@ -107,9 +123,18 @@ void ContactList::rebuild(Grains& grains,
     anchors_[k] = {g.x, g.y, g.z, skins_[k] * skins_[k]};
   }
   find_pairs(grains);
+  if (!body_of_id.empty()) drop_pairs_within_bodies(grains, body_of_id);
   recall(pair_memory, pairs, grains, Partner::grain);
   find_walls(grains, surfaces);
   recall(wall_memory, walls, grains, Partner::wall);
+}
+
+bool ContactList::outlived(const Grains& grains, std::span<const std::uint32_t> rows) const {
+  return std::ranges::any_of(rows, [&](std::uint32_t k) {
+    const Anchor& a = anchors_[k];
+    const Vec3 moved = grains.rows[k].centre() - Vec3{a.x, a.y, a.z};
+    return dot(moved, moved) > a.skin_squared;
+  });
 }
 
 void ContactList::renumber(const std::vector<std::uint32_t>& new_row, std::uint32_t gone) {

@@ -33,11 +33,13 @@ class ContactList {
   explicit ContactList(int history_columns) : history_columns_(history_columns) {}
 
   /// Sorts the grains by cell and finds all candidates anew. `period` is 0 where not periodic;
-  /// `horizon` is the time (s) a grain may fly before its skin is used up.
+  /// `horizon` is the time (s) a grain may fly before its skin is used up. `body_of_id` names the
+  /// clump of each id, if any: members of one clump are no candidates.
   void rebuild(Grains& grains,
                std::span<const Surface> surfaces,
                const Vec3& period,
-               double horizon);
+               double horizon,
+               std::span<const std::uint32_t> body_of_id = {});
 
   /// Where a grain was at the last rebuild.
   struct Anchor {
@@ -45,6 +47,8 @@ class ContactList {
     double skin_squared;  ///< m2
   };
   [[nodiscard]] std::span<const Anchor> anchors() const { return anchors_; }
+  /// Whether one of these rows has moved by its skin since then.
+  [[nodiscard]] bool outlived(const Grains& grains, std::span<const std::uint32_t> rows) const;
 
   /// Follows rows that were taken out: new_row[k] is where row k went, or `gone`.
   void renumber(const std::vector<std::uint32_t>& new_row, std::uint32_t gone);
@@ -70,6 +74,7 @@ class ContactList {
               const Grains& grains,
               Partner partner) const;
   void find_pairs(const Grains& grains);
+  void drop_pairs_within_bodies(const Grains& grains, std::span<const std::uint32_t> body_of_id);
   void find_walls(const Grains& grains, std::span<const Surface> surfaces);
 
   int history_columns_;

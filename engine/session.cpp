@@ -194,7 +194,7 @@ bool Session::rest(double limit) {
   double since = world_->time();
   return until(
       [&] {
-        const auto grains = static_cast<double>(std::max<std::size_t>(1, world_->grains().size()));
+        const auto grains = static_cast<double>(std::max<std::size_t>(1, world_->grain_count()));
         if (world_->kinetic_energy() / grains >= quiet) since = world_->time();
         return world_->time() - since >= hold;
       },
@@ -226,8 +226,8 @@ void Session::emit(std::string_view stage) {
 
 Effort Session::effort() const {
   if (!world_) return {};
-  return {.grains = world_->grains().size(),
-          .inserted = world_->inserted(),
+  return {.grains = world_->grain_count(),
+          .inserted = world_->inserted_grains(),
           .requested = requested_,
           .steps = world_->steps(),
           .grain_steps = world_->grain_steps(),
