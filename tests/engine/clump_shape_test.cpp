@@ -132,6 +132,7 @@ TEST_CASE("spheres that are no clump are refused by name", "[engine]") {
   CHECK_THAT(refusal({unit_ball, {{1, 0, 0}, 0.0}}), Contains("member 2 needs"));
   CHECK_THAT(refusal({unit_ball, {{std::nan(""), 0, 0}, 1.0}}), Contains("member 2 needs"));
   std::vector<ClumpMember> chain;
+  chain.reserve(9);
   for (int k = 0; k < 9; ++k) chain.push_back({{1.5 * k, 0, 0}, 1.0});
   CHECK_THAT(refusal(chain), Contains("9 members"));
   chain.pop_back();
