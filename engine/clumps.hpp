@@ -42,7 +42,7 @@ struct ClumpBody {
   std::uint32_t first_slot = 0;  ///< of its members among those of all clumps
   double scale = 1.0;
   double mass = 0.0;       ///< kg
-  Vec3 inertia;            ///< principal moments, kg m2
+  Vec3 inverse_inertia;    ///< principal, 1/(kg m2)
   Vec3 centre;             ///< of mass, m
   Vec3 velocity;           ///< m/s
   Quaternion orientation;  ///< turns principal axes into those of space
@@ -90,10 +90,6 @@ class Clumps {
   [[nodiscard]] GrainRow envelope(const ClumpBody& body) const;
 
  private:
-  [[nodiscard]] GrainRow member_row(const ClumpBody& body,
-                                    const ClumpMember& member,
-                                    const Vec3& arm,
-                                    const Vec3& spin) const;
   std::uint32_t index_of(const ClumpShape& shape);
 
   std::vector<ClumpShape> shapes_;

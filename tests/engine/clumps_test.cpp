@@ -39,6 +39,11 @@ ClumpShape odd_one() {
 /// The turn about y by an angle.
 Quaternion about_y(double angle) { return {std::cos(angle / 2), 0.0, std::sin(angle / 2), 0.0}; }
 
+/// Principal moments of inertia, kg m2.
+Vec3 inertia_of(const ClumpBody& b) {
+  return {1.0 / b.inverse_inertia.x, 1.0 / b.inverse_inertia.y, 1.0 / b.inverse_inertia.z};
+}
+
 void run(World& world, double seconds) {
   const auto steps = static_cast<int>(std::lround(seconds / world.time_step()));
   for (int i = 0; i < steps; ++i) world.step();
@@ -100,7 +105,7 @@ TEST_CASE("a clump tumbling without torque keeps its energy and angular momentum
     // From the spin as contacts see it, not as it is stored.
     const Quaternion back = conjugate(body(world).orientation);
     const Vec3 w = turned(back, world.grains().rows[0].spin());
-    const Vec3 inertia = body(world).inertia;
+    const Vec3 inertia = inertia_of(body(world));
     const double now = norm({inertia.x * w.x, inertia.y * w.y, inertia.z * w.z});
     worst_momentum = std::max(worst_momentum, std::abs(now / norm(momentum) - 1.0));
     least = std::min(least, w.x);
@@ -257,7 +262,7 @@ TEST_CASE("a rod that meets a wall on one end rebounds as a rigid body", "[engin
                      .orientation = about_y(angle),  // the end at +x is the lower
                      .velocity = {0, 0, -speed}});
     const ClumpBody start = body(world);
-    const double inertia = sorted(start.inertia)[2];
+    const double inertia = sorted(inertia_of(start))[2];
     double touched = 0.0;
     do {
       world.step();
@@ -336,12 +341,13 @@ TEST_CASE("clumps that meet across a periodic side meet as within", "[engine]") 
     World world(ContactModel(repose::tests::parameters(law)),
                 {.time_step = 1e-5, .period = {period, period, 0}, .gravity = {}});
     for (const double side : {-1.0, 1.0}) {
+      // Of unlike spins: between like ones the rolling couple's direction is a rounding error's.
       world.add_clump(rod(3e-3),
                       {.density = density,
                        .centre = {0.025 + shift + side * 6e-3, 0.025 + shift + side * 1e-3, 0.0},
                        .orientation = about_y(0.3),
                        .velocity = {-0.5 * side, 0, 0},
-                       .spin = {0, 0, 30}});
+                       .spin = {0, 10 * side, 30}});
     }
     run(world, 0.3);  // long enough to meet again round the period
     CHECK(world.rebuilds() > 5);
@@ -350,9 +356,9 @@ TEST_CASE("clumps that meet across a periodic side meet as within", "[engine]") 
   };
   const ClumpBody within = collision(0.0);
   const ClumpBody across = collision(0.0249);
-  REQUIRE(norm(spin(within) - Vec3{0, 0, 30}) > 5.0);
-  CHECK(norm(across.velocity - within.velocity) < 1e-6);
-  CHECK(norm(spin(across) - spin(within)) < 1e-4);
+  REQUIRE(norm(spin(within) - Vec3{0, -10, 30}) > 5.0);
+  CHECK(norm(across.velocity - within.velocity) < 1e-9);
+  CHECK(norm(spin(across) - spin(within)) < 1e-6);
 }
 
 TEST_CASE("a clump leaves as a whole, and the others go on undisturbed", "[engine]") {
@@ -400,7 +406,7 @@ TEST_CASE("a clump twice as large has eight times the mass and 32 times the iner
     world.add_clump(odd_one(), {.density = density, .scale = scale, .centre = {0.1 * scale, 0, 0}});
   }
   CHECK(body(world, 1).mass == Approx(8 * body(world).mass).epsilon(1e-12));
-  CHECK(body(world, 1).inertia.y == Approx(32 * body(world).inertia.y).epsilon(1e-12));
+  CHECK(inertia_of(body(world, 1)).y == Approx(32 * inertia_of(body(world)).y).epsilon(1e-12));
   CHECK(sphere_of(world, 3).radius == 2 * sphere_of(world, 0).radius);
 }
 
