@@ -409,19 +409,3 @@ TEST_CASE("a clump twice as large has eight times the mass and 32 times the iner
   CHECK(inertia_of(body(world, 1)).y == Approx(32 * inertia_of(body(world)).y).epsilon(1e-12));
   CHECK(sphere_of(world, 3).radius == 2 * sphere_of(world, 0).radius);
 }
-
-TEST_CASE("random orientations have no preferred direction", "[engine]") {
-  Random random(5, Purpose::grain_position);
-  constexpr int draws = 100000;
-  Vec3 mean, squares;
-  for (int k = 0; k < draws; ++k) {
-    const Vec3 axis = turned(random_orientation(random), {0.6, 0.0, 0.8});
-    mean += (1.0 / draws) * axis;
-    squares += (1.0 / draws) * Vec3{axis.x * axis.x, axis.y * axis.y, axis.z * axis.z};
-  }
-  // Standard errors: sqrt(1/3 / draws) and sqrt(4/45 / draws).
-  CHECK(norm(mean) < 4 * std::sqrt(1.0 / draws));
-  for (const double mean_square : {squares.x, squares.y, squares.z}) {
-    CHECK(mean_square == Approx(1.0 / 3.0).margin(4 * std::sqrt(4.0 / 45.0 / draws)));
-  }
-}
