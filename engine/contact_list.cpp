@@ -82,6 +82,33 @@ void ContactList::find_pairs(const Grains& grains) {
   }
 }
 
+namespace {
+
+/// Whether two rows are members of one clump.
+bool within_body(const Grains& grains,
+                 std::span<const std::uint32_t> body_of_id,
+                 std::uint32_t a,
+                 std::uint32_t b) {
+  const std::uint32_t i = grains.ids[a], j = grains.ids[b];
+  if (i >= body_of_id.size() || j >= body_of_id.size()) return false;
+  return body_of_id[i] != no_body && body_of_id[i] == body_of_id[j];
+}
+
+}  // namespace
+
+void ContactList::drop_pairs_within_bodies(const Grains& grains,
+                                           std::span<const std::uint32_t> body_of_id) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (within_body(grains, body_of_id, pairs.i[k], pairs.j[k])) continue;
+    pairs.i[kept] = pairs.i[k];
+    pairs.j[kept] = pairs.j[k];
+    ++kept;
+  }
+  pairs.i.resize(kept);
+  pairs.j.resize(kept);
+}
+
 void ContactList::find_walls(const Grains& grains, std::span<const Surface> surfaces) {
   walls.i.clear();
   walls.j.clear();
@@ -97,7 +124,8 @@ void ContactList::find_walls(const Grains& grains, std::span<const Surface> surf
 void ContactList::rebuild(Grains& grains,
                           std::span<const Surface> surfaces,
                           const Vec3& period,
-                          double horizon) {
+                          double horizon,
+                          std::span<const std::uint32_t> body_of_id) {
   const Memory pair_memory = remember(pairs, grains, Partner::grain);
   const Memory wall_memory = remember(walls, grains, Partner::wall);
   double largest = 0.0;
@@ -111,6 +139,7 @@ void ContactList::rebuild(Grains& grains,
   repaired_ = 0;
   for (std::size_t k = 0; k < n; ++k) anchor(grains.rows[k], k, horizon);
   find_pairs(grains);
+  if (!body_of_id.empty()) drop_pairs_within_bodies(grains, body_of_id);
   recall(pair_memory, pairs, grains, Partner::grain);
   find_walls(grains, surfaces);
   recall(wall_memory, walls, grains, Partner::wall);
@@ -150,7 +179,10 @@ void ContactList::append(Candidates& c, const std::vector<std::uint64_t>& found)
   c.history.resize(c.size() * static_cast<std::size_t>(history_columns_) + 1, 0.0);
 }
 
-bool ContactList::repair(const Grains& grains, std::span<const Surface> surfaces, double horizon) {
+bool ContactList::repair(const Grains& grains,
+                         std::span<const Surface> surfaces,
+                         double horizon,
+                         std::span<const std::uint32_t> body_of_id) {
   const auto n = static_cast<std::uint32_t>(grains.size());
   std::vector<std::uint32_t> escaped;
   for (std::uint32_t k = 0; k < n; ++k) {
@@ -169,6 +201,7 @@ bool ContactList::repair(const Grains& grains, std::span<const Surface> surfaces
   std::vector<std::uint64_t> near, near_walls;
   for (const std::uint32_t k : escaped) {
     for (const auto [a, b] : grid_.near_pairs_of(k)) {
+      if (within_body(grains, body_of_id, a, b)) continue;
       near.push_back(grains.ids[a] < grains.ids[b] ? key(a, b) : key(b, a));
     }
     for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
@@ -187,6 +220,14 @@ bool ContactList::repair(const Grains& grains, std::span<const Surface> surfaces
   add_new(near, pairs, Partner::grain);
   add_new(near_walls, walls, Partner::wall);
   return true;
+}
+
+bool ContactList::outlived(const Grains& grains, std::span<const std::uint32_t> rows) const {
+  return std::ranges::any_of(rows, [&](std::uint32_t k) {
+    const Anchor& a = anchors_[k];
+    const Vec3 moved = grains.rows[k].centre() - Vec3{a.x, a.y, a.z};
+    return dot(moved, moved) > a.skin_squared;
+  });
 }
 
 void ContactList::renumber(const std::vector<std::uint32_t>& new_row, std::uint32_t gone) {

@@ -33,15 +33,20 @@ class ContactList {
   explicit ContactList(int history_columns) : history_columns_(history_columns) {}
 
   /// Sorts the grains by cell and finds all candidates anew. `period` is 0 where not periodic;
-  /// `horizon` is the time (s) a grain may fly before its skin is used up.
+  /// `horizon` is the time (s) a grain may fly before its skin is used up. `body_of_id` names the
+  /// clump of each id, if any: members of one clump are no candidates.
   void rebuild(Grains& grains,
                std::span<const Surface> surfaces,
                const Vec3& period,
-               double horizon);
+               double horizon,
+               std::span<const std::uint32_t> body_of_id = {});
 
   /// Looks again at the few grains that have moved by their skins, so that the list is valid once
   /// more. False, and nothing changed, when they are too many: then rebuild.
-  bool repair(const Grains& grains, std::span<const Surface> surfaces, double horizon);
+  bool repair(const Grains& grains,
+              std::span<const Surface> surfaces,
+              double horizon,
+              std::span<const std::uint32_t> body_of_id = {});
 
   /// Where a grain was when it was last looked at.
   struct Anchor {
@@ -49,6 +54,8 @@ class ContactList {
     double skin_squared;  ///< m2
   };
   [[nodiscard]] std::span<const Anchor> anchors() const { return anchors_; }
+  /// Whether one of these rows has moved by its skin since then.
+  [[nodiscard]] bool outlived(const Grains& grains, std::span<const std::uint32_t> rows) const;
 
   /// Follows rows that were taken out: new_row[k] is where row k went, or `gone`.
   void renumber(const std::vector<std::uint32_t>& new_row, std::uint32_t gone);
@@ -77,6 +84,7 @@ class ContactList {
   /// Where a grain is now; its skin starts anew.
   void anchor(const GrainRow& grain, std::size_t row, double horizon);
   void append(Candidates& candidates, const std::vector<std::uint64_t>& found);
+  void drop_pairs_within_bodies(const Grains& grains, std::span<const std::uint32_t> body_of_id);
   void find_walls(const Grains& grains, std::span<const Surface> surfaces);
 
   int history_columns_;

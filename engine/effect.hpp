@@ -4,6 +4,7 @@
 /// a `text`, a table of `fields`, its `stage` and `scope`, and at least one hook:
 ///
 ///   populate   once, when grains are made: may change their sizes
+///   shape      once, when grains are made: the spheres of which a grain consists
 ///   prepare    once per material pair: Parameters, pair elasticity -> Coefficients
 ///   contact    each step, per block of contacts: columns in, columns out
 ///
@@ -15,6 +16,7 @@
 #include <span>
 #include <string_view>
 
+#include "engine/clump_shape.hpp"
 #include "engine/contact_block.hpp"
 #include "engine/field.hpp"
 #include "engine/random.hpp"
@@ -75,6 +77,11 @@ concept PopulateHook = requires(const typename E::Parameters& parameters, Random
 };
 
 template <class E>
+concept ShapeHook = requires(const typename E::Parameters& parameters) {
+  { E::shape(parameters) } -> std::same_as<std::span<const ClumpMember>>;
+};
+
+template <class E>
 concept Effect = requires {
   { E::text } -> std::convertible_to<EffectText>;
   { E::stage } -> std::convertible_to<Stage>;
@@ -82,6 +89,6 @@ concept Effect = requires {
   E::fields;
 }
 &&sizeof(typename E::Parameters) == E::fields.size() * sizeof(double) &&
-    (ContactHook<E> || PopulateHook<E>);
+    (ContactHook<E> || PopulateHook<E> || ShapeHook<E>);
 
 }  // namespace repose::engine

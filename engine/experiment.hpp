@@ -88,7 +88,7 @@ struct Effort {
   std::uint64_t inserted = 0;   ///< grains put in
   std::uint64_t requested = 0;  ///< grains the filling procedure asked for
   std::uint64_t steps = 0;
-  std::uint64_t grain_steps = 0;  ///< sum over the steps of the grains in them
+  std::uint64_t grain_steps = 0;  ///< sum over the steps of the spheres in them
   std::uint64_t rebuilds = 0;     ///< of the neighbour list
   double time_step = 0.0;         ///< s
   double simulated_seconds = 0.0;

@@ -39,7 +39,7 @@ std::uint64_t rain(Session& session, const Rain& order) {
         grain.vy = random.uniform(-0.2, 0.2);
         grain.vz = random.uniform(-0.2, 0.2);
         if (order.fits && !order.fits(grain.centre(), grain.radius)) continue;
-        session.world().add(grain);
+        session.put(grain);
         ++put;
       }
     }
@@ -82,7 +82,7 @@ void Stream::feed() {
       });
     }
     if (!placed) return;
-    world.add(grain);
+    session_.put(grain);
     near.push_back(grain);
     ++put_;
   }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "engine/vec3.hpp"
@@ -30,6 +31,9 @@ struct alignas(64) GrainLoad {
   double tx = 0.0, ty = 0.0, tz = 0.0;  ///< N m
   double no_torque = 0.0;
 };
+
+/// Stands for the body of a sphere that is no member of a clump.
+inline constexpr std::uint32_t no_body = std::numeric_limits<std::uint32_t>::max();
 
 struct Grains {
   std::vector<GrainRow> rows;

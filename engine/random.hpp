@@ -12,6 +12,7 @@ enum class Purpose : std::uint64_t {
   grain_size = 1,
   grain_position = 2,
   grain_velocity = 3,
+  grain_orientation = 4,
   trial = 16,     ///< the seed of an evaluation
   design = 17,    ///< space-filling points
   proposal = 18,  ///< draws from an emulator

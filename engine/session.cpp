@@ -1,6 +1,7 @@
 #include "engine/session.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "engine/catalogue.hpp"
@@ -62,6 +63,16 @@ std::string check_parameters(const ParameterSet& parameters) {
   return {};
 }
 
+/// The clump that grains are; nothing where they are spheres.
+std::optional<ClumpShape> shape_of_grains(const ParameterSet& parameters) {
+  const auto p = parameters_of<effects::GrainShape>(parameters, {MaterialId::grain});
+  const std::span<const ClumpMember> members = effects::GrainShape::shape(p);
+  if (members.size() == 1) return std::nullopt;
+  auto shape = clump_shape(members);
+  assert(shape && "published shapes hold together");
+  return *std::move(shape);
+}
+
 }  // namespace
 
 std::string check(const ExperimentInfo& info, const Trial& trial) {
@@ -80,10 +91,18 @@ Session::Session(const Trial& trial, const Run& run)
     : trial_(trial),
       run_(run),
       model_(trial.parameters),
-      spread_(parameters_of<effects::SizeSpread>(trial.parameters, {MaterialId::grain})) {
+      spread_(parameters_of<effects::SizeSpread>(trial.parameters, {MaterialId::grain})),
+      shape_(shape_of_grains(trial.parameters)) {
+  const double least = std::cbrt(effects::SizeSpread::smallest(spread_));
+  const double most = std::cbrt(effects::SizeSpread::largest(spread_));
   const double mean = 0.5 * grain().diameter;
-  smallest_radius_ = mean * std::cbrt(effects::SizeSpread::smallest(spread_));
-  largest_radius_ = mean * std::cbrt(effects::SizeSpread::largest(spread_));
+  smallest_radius_ = mean * least;
+  largest_radius_ = mean * most;
+  if (!shape_) return;
+  const double scale = grain().diameter / equivalent_diameter(*shape_);
+  const auto thinnest = std::ranges::min_element(shape_->members, {}, &ClumpMember::radius);
+  smallest_radius_ = scale * thinnest->radius * least;
+  largest_radius_ = scale * shape_->bounding_radius * most;
 }
 
 double Session::grain_mass() const {
@@ -117,9 +136,26 @@ bool Session::set_up(const Apparatus& apparatus) {
 }
 
 GrainRow Session::next_grain() const {
-  Random random(trial_.seed, Purpose::grain_size, world_->inserted());
+  Random random(trial_.seed, Purpose::grain_size, world_->inserted_grains());
   const double volume = effects::SizeSpread::populate(spread_, random);
-  return sphere(0.5 * grain().diameter * std::cbrt(volume), grain().density);
+  GrainRow row = sphere(0.5 * grain().diameter * std::cbrt(volume), grain().density);
+  if (shape_) row.radius *= 2.0 * shape_->bounding_radius / equivalent_diameter(*shape_);
+  return row;
+}
+
+void Session::put(const GrainRow& grain_row) {
+  if (!shape_) {
+    world_->add(grain_row);
+    return;
+  }
+  Random random(trial_.seed, Purpose::grain_orientation, world_->inserted_grains());
+  world_->add_clump(*shape_,
+                    {.density = grain().density,
+                     .scale = grain_row.radius / shape_->bounding_radius,
+                     .centre = grain_row.centre(),
+                     .orientation = random_orientation(random),
+                     .velocity = grain_row.velocity(),
+                     .spin = grain_row.spin()});
 }
 
 bool Session::fail(FailureKind kind, const std::string& message) {
@@ -194,7 +230,7 @@ bool Session::rest(double limit) {
   double since = world_->time();
   return until(
       [&] {
-        const auto grains = static_cast<double>(std::max<std::size_t>(1, world_->grains().size()));
+        const auto grains = static_cast<double>(std::max<std::size_t>(1, world_->grain_count()));
         if (world_->kinetic_energy() / grains >= quiet) since = world_->time();
         return world_->time() - since >= hold;
       },
@@ -226,8 +262,8 @@ void Session::emit(std::string_view stage) {
 
 Effort Session::effort() const {
   if (!world_) return {};
-  return {.grains = world_->grains().size(),
-          .inserted = world_->inserted(),
+  return {.grains = world_->grain_count(),
+          .inserted = world_->inserted_grains(),
           .requested = requested_,
           .steps = world_->steps(),
           .grain_steps = world_->grain_steps(),

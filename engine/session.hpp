@@ -33,17 +33,22 @@ class Session {
 
   [[nodiscard]] World& world() { return *world_; }
   [[nodiscard]] const Material& grain() const { return model_.material(MaterialId::grain); }
+  /// Radius of the sphere that holds the largest grain, m.
   [[nodiscard]] double largest_radius() const { return largest_radius_; }
   [[nodiscard]] std::uint64_t seed() const { return trial_.seed; }
-  /// Rayleigh time of the smallest grain, s.
+  /// Rayleigh time of the smallest sphere, s.
   [[nodiscard]] double rayleigh() const { return rayleigh_time(smallest_radius_, grain()); }
   /// How long the shortest collision at that speed lasts, s.
   [[nodiscard]] double impact_time_at(double speed) const;
   /// Mass of the mean grain, kg.
   [[nodiscard]] double grain_mass() const;
 
-  /// A new grain of the population: its size depends on the seed and its id alone.
+  /// A new grain of the population as the sphere that holds it: its size depends on the seed and on
+  /// how many grains were put in before it.
   [[nodiscard]] GrainRow next_grain() const;
+  /// Puts that grain in where its sphere now is, with its motion; a clump's orientation depends on
+  /// the seed and on how many grains were put in before it.
+  void put(const GrainRow& grain_row);
 
   /// Counts grains that a filling procedure wanted to put in.
   void request(std::uint64_t grains) { requested_ += grains; }
@@ -79,6 +84,7 @@ class Session {
   const Run& run_;
   ContactModel model_;
   effects::SizeSpread::Parameters spread_;
+  std::optional<ClumpShape> shape_;  ///< of every grain; none: spheres
   double smallest_radius_;
   double largest_radius_;
   Apparatus apparatus_;

@@ -79,21 +79,40 @@ World::World(ContactModel model, const WorldOptions& options)
       list_(model_.history_columns()),
       block_(std::make_unique<ContactBlock>()) {}
 
-std::uint32_t World::add(const GrainRow& grain) {
+std::uint32_t World::add_row(const GrainRow& row) {
   const auto id = static_cast<std::uint32_t>(inserted_++);
-  grains_.rows.push_back(grain);
+  grains_.rows.push_back(row);
   grains_.ids.push_back(id);
   grains_.loads.push_back({});
   stale_ = true;
   return id;
 }
 
+std::uint32_t World::add(const GrainRow& grain) {
+  ++inserted_grains_;
+  return add_row(grain);
+}
+
+std::uint32_t World::add_clump(const ClumpShape& shape, const ClumpPlacement& placement) {
+  ++inserted_grains_;
+  const auto first = static_cast<std::uint32_t>(inserted_);
+  for (const GrainRow& member : clumps_.add(shape, placement, first)) add_row(member);
+  return first;
+}
+
 std::size_t World::remove(const std::function<bool(const GrainRow&)>& condition) {
   std::vector<std::uint32_t> new_row(grains_.size());
+  std::vector<std::uint8_t> leaving;  // clumps
+  leaving.reserve(clumps_.bodies().size());
+  for (const ClumpBody& body : clumps_.bodies()) {
+    leaving.push_back(condition(clumps_.envelope(body)) ? 1 : 0);
+  }
+  const std::size_t before = grain_count();
   std::size_t kept = 0;
   constexpr std::uint32_t gone = std::numeric_limits<std::uint32_t>::max();
   for (std::size_t k = 0; k < grains_.size(); ++k) {
-    if (condition(grains_.rows[k])) {
+    const std::uint32_t body = clumps_.body_of(grains_.ids[k]);
+    if (body == no_body ? condition(grains_.rows[k]) : leaving[body] != 0) {
       new_row[k] = gone;
       continue;
     }
@@ -102,14 +121,14 @@ std::size_t World::remove(const std::function<bool(const GrainRow&)>& condition)
     grains_.ids[kept] = grains_.ids[k];
     ++kept;
   }
-  const std::size_t removed = grains_.size() - kept;
-  if (removed == 0) return 0;
+  if (kept == grains_.size()) return 0;
+  clumps_.remove(leaving);
   grains_.rows.resize(kept);
   grains_.ids.resize(kept);
   grains_.loads.resize(kept);
   list_.renumber(new_row, gone);
   stale_ = true;
-  return removed;
+  return before - grain_count();
 }
 
 std::vector<Surface>& World::change_surfaces() {
@@ -123,7 +142,12 @@ void World::turn_gravity(double rate) {
 }
 
 void World::rebuild() {
-  list_.rebuild(grains_, surfaces_, options_.period, horizon_steps * options_.time_step);
+  list_.rebuild(grains_,
+                surfaces_,
+                options_.period,
+                horizon_steps * options_.time_step,
+                clumps_.bodies_of_ids());
+  if (!clumps_.empty()) clumps_.locate(grains_, options_.period);
   grains_.loads.resize(grains_.size());
   stale_ = false;
   ++rebuilds_;
@@ -206,15 +230,23 @@ void World::push_walls() {
   }
 }
 
+/// Members of clumps have no motion of their own: what they get with the others is overwritten.
 void World::move() {
+  if (!clumps_.empty()) clumps_.collect(grains_);
   Motion motion{gravity_, options_.time_step, grains_, list_.anchors().data()};
   advance(motion);
   outlived_ = motion.outlived;
+  if (clumps_.empty()) return;
+  clumps_.advance(options_.time_step, gravity_, options_.period, grains_.rows);
+  outlived_ = outlived_ || list_.outlived(grains_, clumps_.rows());
 }
 
 void World::step() {
   const double horizon = horizon_steps * options_.time_step;
-  if (stale_ || (outlived_ && !list_.repair(grains_, surfaces_, horizon))) rebuild();
+  if (stale_ ||
+      (outlived_ && !list_.repair(grains_, surfaces_, horizon, clumps_.bodies_of_ids()))) {
+    rebuild();
+  }
   closed_ = 0;
   push_pairs();
   find_closed_walls();
@@ -230,12 +262,22 @@ void World::step() {
   grain_steps_ += grains_.size();
 }
 
+void World::for_each_grain(const std::function<void(const GrainRow&, std::uint32_t)>& see) const {
+  for (std::size_t k = 0; k < grains_.size(); ++k) {
+    if (clumps_.body_of(grains_.ids[k]) == no_body) see(grains_.rows[k], grains_.ids[k]);
+  }
+  for (const ClumpBody& body : clumps_.bodies()) see(clumps_.envelope(body), body.first_id);
+}
+
 double World::kinetic_energy() const {
   double energy = 0.0;
-  for (const GrainRow& a : grains_.rows) {
+  for (std::size_t k = 0; k < grains_.size(); ++k) {
+    const GrainRow& a = grains_.rows[k];
+    if (clumps_.body_of(grains_.ids[k]) != no_body) continue;
     energy += 0.5 * dot(a.velocity(), a.velocity()) / a.inverse_mass;
     energy += 0.5 * dot(a.spin(), a.spin()) / a.inverse_inertia;
   }
+  for (const ClumpBody& body : clumps_.bodies()) energy += engine::kinetic_energy(body);
   return energy;
 }
 
@@ -266,10 +308,11 @@ double World::bytes_per_grain() const {
   const std::size_t per_grain =
       2 * sizeof(GrainRow) + sizeof(GrainLoad) + sizeof(std::uint32_t) * 4 +
       sizeof(double) * 5;  // rows twice while they are sorted; skins, anchors
+  constexpr std::size_t per_member = 2 * sizeof(std::uint32_t) + sizeof(Vec3);
   const std::size_t bytes =
-      grains_.size() * per_grain + 2 * (list_.pairs.size() + list_.walls.size()) * per_candidate;
-  return grains_.size() == 0 ? 0.0
-                             : static_cast<double>(bytes) / static_cast<double>(grains_.size());
+      grains_.size() * per_grain + 2 * (list_.pairs.size() + list_.walls.size()) * per_candidate +
+      clumps_.bodies().size() * sizeof(ClumpBody) + clumps_.members() * per_member;
+  return grain_count() == 0 ? 0.0 : static_cast<double>(bytes) / static_cast<double>(grain_count());
 }
 
 }  // namespace repose::engine

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/boundary.hpp"
+#include "engine/clumps.hpp"
 #include "engine/contact_list.hpp"
 #include "engine/contact_model.hpp"
 #include "engine/grains.hpp"
@@ -35,7 +36,10 @@ class World {
 
   /// Puts a grain in; its id is the number of grains put in before it.
   std::uint32_t add(const GrainRow& grain);
-  /// Takes out every grain that the condition names; returns how many.
+  /// Puts a clump in; its members' ids are consecutive, the first is returned.
+  std::uint32_t add_clump(const ClumpShape& shape, const ClumpPlacement& placement);
+  /// Takes out every grain that the condition names; returns how many. A clump is judged as one
+  /// sphere about its centre of mass that holds all its members, and leaves as a whole.
   std::size_t remove(const std::function<bool(const GrainRow&)>& condition);
 
   /// Walls may be changed between steps through this.
@@ -47,8 +51,18 @@ class World {
 
   void step();
 
+  /// The spheres, members of clumps among them.
   [[nodiscard]] const Grains& grains() const { return grains_; }
-  /// Mutable access for tests and experiments that set a grain's motion.
+  [[nodiscard]] const Clumps& clumps() const { return clumps_; }
+  /// Grains, a clump as one.
+  [[nodiscard]] std::size_t grain_count() const {
+    return grains_.size() - clumps_.members() + clumps_.bodies().size();
+  }
+  /// Calls `see` with each grain and its id: spheres in the order of the rows, then clumps, each as
+  /// one sphere about its centre of mass that holds all its members, with the id of the first.
+  void for_each_grain(const std::function<void(const GrainRow&, std::uint32_t)>& see) const;
+  /// Mutable access for tests and experiments that set a grain's motion; a clump's is not in its
+  /// members' rows.
   GrainRow& row(std::size_t index) {
     stale_ = true;
     return grains_.rows[index];
@@ -60,7 +74,10 @@ class World {
   [[nodiscard]] std::uint64_t steps() const { return steps_; }
   [[nodiscard]] std::uint64_t grain_steps() const { return grain_steps_; }
   [[nodiscard]] std::uint64_t rebuilds() const { return rebuilds_; }
+  /// Spheres put in so far, members of clumps among them: the next id.
   [[nodiscard]] std::uint64_t inserted() const { return inserted_; }
+  /// Grains put in so far, a clump as one.
+  [[nodiscard]] std::uint64_t inserted_grains() const { return inserted_grains_; }
   /// Contacts closed in the last step, walls included.
   [[nodiscard]] std::size_t contacts() const { return closed_; }
   [[nodiscard]] const Candidates& pairs() const { return list_.pairs; }
@@ -79,6 +96,7 @@ class World {
     Vec3 offset;
   };
 
+  std::uint32_t add_row(const GrainRow& row);
   void rebuild();
   void find_closed_walls();
   void push_pairs();
@@ -91,6 +109,7 @@ class World {
   double turn_rate_ = 0.0;
   double turn_start_ = 0.0;
   Grains grains_;
+  Clumps clumps_;
   std::vector<Surface> surfaces_;
   ContactList list_;
   std::array<std::vector<ClosedWall>, 2> closed_walls_;  ///< the same by the wall's material
@@ -102,6 +121,7 @@ class World {
   std::uint64_t grain_steps_ = 0;
   std::uint64_t rebuilds_ = 0;
   std::uint64_t inserted_ = 0;
+  std::uint64_t inserted_grains_ = 0;
   std::size_t closed_ = 0;
 };
 

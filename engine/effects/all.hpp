@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "engine/effects/elastic_rolling_resistance.hpp"
+#include "engine/effects/grain_shape.hpp"
 #include "engine/effects/restitution.hpp"
 #include "engine/effects/rolling_resistance.hpp"
 #include "engine/effects/size_spread.hpp"
@@ -12,6 +13,7 @@
 namespace repose::engine {
 
 using AllEffects = std::tuple<effects::SizeSpread,
+                              effects::GrainShape,
                               effects::Restitution,
                               effects::SlidingFriction,
                               effects::RollingResistance,

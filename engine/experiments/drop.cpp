@@ -1,7 +1,9 @@
 /// Drop: one grain falls on a rigid flat wall; its rebound gives the restitution.
 ///
-/// Protocol: the underside is `height` above the wall; the grain is released at rest, without spin;
-/// the first rebound's apex H_r of the underside is read. restitution = sqrt(H_r / height).
+/// Protocol: the grain is a sphere of mean volume, whatever the shape of grains, since a clump that
+/// meets the wall off its centre turns instead of rebounding. Its underside is `height` above the
+/// wall; it is released at rest, without spin; the first rebound's apex H_r of the underside is
+/// read. restitution = sqrt(H_r / height).
 ///
 /// Source: Boac et al. 2010, Trans. ASABE 53(4), 1201-1216 (drop test from 151 mm on steel).
 #include <algorithm>
@@ -26,8 +28,9 @@ struct Drop {
       .title = "Drop test",
       .summary = "One grain falls on a flat wall; how high it rebounds gives the restitution.",
       .procedure =
-          "A grain of mean size is released at rest, without spin, its underside at `height` "
-          "above a rigid flat wall. The apex of the underside after the first impact is read.",
+          "A spherical grain of mean volume is released at rest, without spin, its underside at "
+          "`height` above a rigid flat wall. The apex of the underside after the first impact is "
+          "read.",
       .citation = "Boac et al. 2010, Trans. ASABE 53(4), 1201-1216",
   };
   static constexpr std::array fields{
