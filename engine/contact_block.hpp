@@ -14,6 +14,7 @@
 ///   rolling       roll, spins, elastic_force,        couple_x..z
 ///                 grip_force
 ///   loads         all forces                         force, torque_i, torque_j
+///   own torques   spins, arms, grip_force            torque_i, torque_j (hook `load`)
 ///
 /// Lanes past the last contact hold two spheres that just touch, at rest: loops always run to
 /// `width`.

@@ -119,6 +119,14 @@ template <std::size_t I>
   }
 }
 
+template <std::size_t I>
+[[gnu::always_inline]] inline void load_one(const PairLaw& law, ContactBlock& block) {
+  using E = std::tuple_element_t<I, AllEffects>;
+  if constexpr (LoadHook<E>) {
+    if (law.active[I]) E::load(block, std::get<I>(law.coefficients));
+  }
+}
+
 /// Active effects in catalogue order. The only place where laws are composed.
 template <Partner partner>
 inline void apply_to(const PairLaw& law, ContactBlock& block, HistoryBlock history, double dt) {
@@ -135,11 +143,16 @@ inline void apply_to(const PairLaw& law, ContactBlock& block, HistoryBlock histo
                        &block.couple_z}) {
     column->fill(0.0);
   }
-  const auto fold = [&]<std::size_t... I>(std::index_sequence<I...>) {
+  constexpr std::make_index_sequence<effect_count> all;
+  const auto contacts = [&]<std::size_t... I>(std::index_sequence<I...>) {
     (apply_one<I>(law, block, history, dt), ...);
   };
-  fold(std::make_index_sequence<effect_count>{});
+  contacts(all);
   sum_loads(block);
+  const auto loads = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (load_one<I>(law, block), ...);
+  };
+  loads(all);
 }
 
 }  // namespace
@@ -166,12 +179,14 @@ PairElastic pair_elastic(const Material& a, const Material& b) {
 template <std::size_t I>
 void bind_one(const ParameterSet& set, MaterialId partner, PairLaw& law) {
   using E = std::tuple_element_t<I, AllEffects>;
-  if constexpr (ContactHook<E>) {
+  if constexpr (ContactHook<E> || LoadHook<E>) {
     const auto parameters = parameters_of<E>(set, {MaterialId::grain, partner});
     if (!is_active<E>(parameters)) return;
     law.active[I] = true;
-    law.history_start[I] = law.history_columns;
-    law.history_columns += E::history_columns;
+    if constexpr (ContactHook<E>) {
+      law.history_start[I] = law.history_columns;
+      law.history_columns += E::history_columns;
+    }
     std::get<I>(law.coefficients) = E::prepare(parameters, law.elastic);
   }
 }

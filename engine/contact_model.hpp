@@ -17,7 +17,8 @@ template <class E>
 struct CoefficientsOf {
   using type = NoCoefficients;
 };
-template <ContactHook E>
+template <class E>
+requires ContactHook<E> || LoadHook<E>
 struct CoefficientsOf<E> {
   using type = typename E::Coefficients;
 };

@@ -7,6 +7,7 @@
 ///   shape      once, when grains are made: the spheres of which a grain consists
 ///   prepare    once per material pair: Parameters, pair elasticity -> Coefficients
 ///   contact    each step, per block of contacts: columns in, columns out
+///   load       the same after the sums: what each grain receives for itself, not as one of a pair
 ///
 /// At the null value of all its parameters an effect is exactly absent.
 #pragma once
@@ -72,6 +73,11 @@ concept ContactHook = requires(ContactBlock& block,
 };
 
 template <class E>
+concept LoadHook = requires(ContactBlock& block, const typename E::Coefficients& coefficients) {
+  { E::load(block, coefficients) } -> std::same_as<void>;
+};
+
+template <class E>
 concept PopulateHook = requires(const typename E::Parameters& parameters, Random& random) {
   { E::populate(parameters, random) } -> std::same_as<double>;  // grain volume over mean volume
 };
@@ -89,6 +95,6 @@ concept Effect = requires {
   E::fields;
 }
 &&sizeof(typename E::Parameters) == E::fields.size() * sizeof(double) &&
-    (ContactHook<E> || PopulateHook<E> || ShapeHook<E>);
+    (ContactHook<E> || LoadHook<E> || PopulateHook<E> || ShapeHook<E>);
 
 }  // namespace repose::engine

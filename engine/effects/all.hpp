@@ -5,6 +5,7 @@
 
 #include "engine/effects/elastic_rolling_resistance.hpp"
 #include "engine/effects/grain_shape.hpp"
+#include "engine/effects/own_spin_rolling_resistance.hpp"
 #include "engine/effects/restitution.hpp"
 #include "engine/effects/rolling_resistance.hpp"
 #include "engine/effects/size_spread.hpp"
@@ -17,7 +18,8 @@ using AllEffects = std::tuple<effects::SizeSpread,
                               effects::Restitution,
                               effects::SlidingFriction,
                               effects::RollingResistance,
-                              effects::ElasticRollingResistance>;
+                              effects::ElasticRollingResistance,
+                              effects::OwnSpinRollingResistance>;
 
 inline constexpr std::size_t effect_count = std::tuple_size_v<AllEffects>;
 

@@ -5,7 +5,9 @@
 ///   M  couple carried by the contact, N m (history)    w  spin i - spin j without the twist, rad/s
 ///   a  radius of the contact patch, m    R*  reduced radius, m    F  grip force, N
 ///
-/// Unlike the couple of constant size it holds a bed wholly at rest.
+/// The cap has the reduced radius, half of its own radius between equal grains and all of it at a
+/// wall: mu_r of a cap on the own radius is half as large between equal grains. Unlike the couple
+/// of constant size it holds a bed wholly at rest.
 ///
 /// Source: model C of Ai, Chen, Rotter & Ooi 2011, Powder Technology 206, 269-282, without its
 /// dashpot;

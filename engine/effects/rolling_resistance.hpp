@@ -4,9 +4,10 @@
 ///
 ///   w  spin i - spin j without the twist, rad/s     R*  reduced radius, m     F  elastic force, N
 ///
-/// R* is half a grain's radius between equal grains and the whole radius at a wall; codes whose
-/// couple uses the grain's own radius need half the coefficient between grains. The couple keeps
-/// its size at the slightest rolling, so a bed at rest trembles below the threshold of rest.
+/// The cap has the reduced radius: half a grain's radius between equal grains, all of it at a wall.
+/// Codes whose couple uses the grain's own radius need half the coefficient between grains. The
+/// couple keeps its size at the slightest rolling, so a bed at rest trembles below the threshold of
+/// rest.
 ///
 /// Source: Zhou, Wright, Yang, Xu & Yu 1999, Physica A 269, 536-553; model A of Ai, Chen, Rotter &
 /// Ooi

@@ -15,6 +15,7 @@ struct GrainLaw {
   double sliding = 0.0;
   double rolling = 0.0;
   double elastic_rolling = 0.0;
+  double own_spin_rolling = 0.0;
   double wall_stiffening = 1.0;  // shear modulus of the wall over the grain's
 };
 
@@ -32,6 +33,8 @@ inline engine::ParameterSet parameters(const GrainLaw& law) {
     set.set({"rolling_resistance.coefficient", {MaterialId::grain, partner}}, law.rolling);
     set.set({"elastic_rolling_resistance.coefficient", {MaterialId::grain, partner}},
             law.elastic_rolling);
+    set.set({"own_spin_rolling_resistance.coefficient", {MaterialId::grain, partner}},
+            law.own_spin_rolling);
   }
   return set;
 }

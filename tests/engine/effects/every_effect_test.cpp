@@ -114,8 +114,10 @@ TEST_CASE("off its null values an effect changes something", "[engine]") {
   }
 }
 
-TEST_CASE("torques about the contact point balance under every effect", "[engine]") {
+TEST_CASE("torques about the contact point balance under every law of pairs", "[engine]") {
   for (const EffectInfo& effect : effect_catalogue()) {
+    // This law brakes each grain for itself: its file says so.
+    if (effect.text.name == "own_spin_rolling_resistance") continue;
     CAPTURE(effect.text.name);
     ContactBlock c{};
     apply_to_random(with(effect, true), Partner::grain, c);
