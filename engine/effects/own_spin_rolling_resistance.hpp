@@ -9,7 +9,9 @@
 /// Between equal grains this mu_r is as strong as twice the value there, at a wall as the same.
 /// The two torques are not opposite: grains that spin alike as one body are braked all the same,
 /// so the angular momentum of a pair is not kept. Offered since published coefficients are often
-/// those of this form.
+/// those of this form. The torques keep their size at the slightest spin, and a grain has one at
+/// each of its contacts: a bed trembles, the more the larger mu_r, and above about 0.1 it may never
+/// meet the threshold of rest.
 ///
 /// Source: Sakaguchi, Ozaki & Igarashi 1993, Int. J. Mod. Phys. B 7, 1949-1963; Ai, Chen, Rotter &
 ///         Ooi 2011, Powder Technology 206, 269-282 (model A, on which spin it may act).
