@@ -17,21 +17,6 @@ namespace {
 
 constexpr double g = 9.81;
 
-/// A grain settled on a plane, ready to be given a motion.
-World on_a_plane(const GrainLaw& law, double time_step = 2e-5) {
-  World world(ContactModel(repose::tests::parameters(law)), {.time_step = time_step, .period = {}});
-  world.change_surfaces().push_back(plane(0.0));
-  GrainRow grain = sphere(0.5 * law.diameter, law.density);
-  const PairLaw& pair = world.model().law(MaterialId::wall);
-  // Overlap that bears the weight.
-  const double load = mass(grain) * g;
-  const double overlap =
-      std::pow(load / (4.0 / 3.0 * pair.elastic.modulus * std::sqrt(grain.radius)), 2.0 / 3.0);
-  grain.z = grain.radius - overlap;
-  world.add(grain);
-  return world;
-}
-
 void run(World& world, double seconds) {
   const auto steps = static_cast<int>(std::lround(seconds / world.time_step()));
   for (int i = 0; i < steps; ++i) world.step();
@@ -74,63 +59,6 @@ TEST_CASE("a grain in free fall follows the parabola", "[engine]") {
   // Leapfrog from rest: half a step's kick too much.
   CHECK(world.grains().rows[0].z ==
         Approx(1.0 - 0.5 * g * 0.04).margin(0.5 * g * 0.2 * 1e-4 * 1.01));
-}
-
-TEST_CASE("a sliding sphere ends rolling at 5/7 of its speed", "[engine]") {
-  for (const double mu : {0.2, 0.45, 0.7}) {
-    CAPTURE(mu);
-    World world =
-        on_a_plane({.restitution = 0.6, .sliding = mu});  // damped: the spring comes to rest
-    world.row(0).vx = 0.5;
-    run(world, 2 * 2.0 * 0.5 / (7 * mu * g));
-    const GrainRow& grain = world.grains().rows[0];
-    CHECK(grain.vx == Approx(5.0 / 7.0 * 0.5).epsilon(0.003));
-    CHECK(grain.wy * grain.radius == Approx(grain.vx).epsilon(0.01));
-  }
-}
-
-TEST_CASE("a sliding sphere slows at mu g until it rolls", "[engine]") {
-  const double mu = 0.3, v0 = 1.0, t = 0.5 * 2 * v0 / (7 * mu * g);
-  World world = on_a_plane({.sliding = mu});
-  world.row(0).vx = v0;
-  run(world, t);
-  const GrainRow& grain = world.grains().rows[0];
-  CHECK(grain.vx == Approx(v0 - mu * g * t).epsilon(0.003));
-  CHECK(grain.wy == Approx(2.5 * mu * g * t / grain.radius).epsilon(0.01));
-}
-
-TEST_CASE("a rolling sphere slows at 5/7 of the rolling coefficient times g", "[engine]") {
-  const double coefficient = GENERATE(0.02, 0.05);
-  const bool elastic = GENERATE(false, true);
-  CAPTURE(coefficient, elastic);
-  World world = on_a_plane({.sliding = 0.5,
-                            .rolling = elastic ? 0.0 : coefficient,
-                            .elastic_rolling = elastic ? coefficient : 0.0});
-  const double v0 = 0.4, t = 0.2;
-  world.row(0).vx = v0;
-  world.row(0).wy = v0 / world.grains().rows[0].radius;
-  run(world, t);
-  CHECK(world.grains().rows[0].vx == Approx(v0 - 5.0 / 7.0 * coefficient * g * t).epsilon(0.01));
-}
-
-TEST_CASE("a sphere on an incline rolls at 5/7 of g (sin - mu_r cos), or rests", "[engine]") {
-  const double angle = 10 * unit::pi / 180;
-  for (const double coefficient : {0.0, 0.05, 0.3}) {
-    CAPTURE(coefficient);
-    const GrainLaw law{.restitution = 0.6, .sliding = 0.6, .elastic_rolling = coefficient};
-    World world(ContactModel(repose::tests::parameters(law)),
-                {.time_step = 2e-5,
-                 .period = {},
-                 .gravity = {g * std::sin(angle), 0, -g * std::cos(angle)}});
-    world.change_surfaces().push_back(plane(0.0));
-    GrainRow grain = sphere(0.5 * law.diameter, law.density);
-    grain.z = grain.radius;
-    world.add(grain);
-    run(world, 0.2);
-    const double expected =
-        std::max(0.0, 5.0 / 7.0 * g * (std::sin(angle) - coefficient * std::cos(angle)));
-    CHECK(world.grains().rows[0].vx == Approx(expected * 0.2).epsilon(0.02).margin(0.002));
-  }
 }
 
 TEST_CASE("an elastic stack keeps its energy", "[engine]") {

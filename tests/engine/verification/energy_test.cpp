@@ -26,10 +26,10 @@ World can_of_grains(const GrainLaw& law, double time_step) {
   walls[1].velocity = {0.3, 0.0, 0.0};
   Random random(5, Purpose::grain_position);
   for (int k = 0; k < 45; ++k) {
-    const int column = k % 9, layer = k / 9;
+    const int column = k % 9, row = column / 3, layer = k / 9;
     GrainRow grain = sphere(0.5 * law.diameter * random.uniform(0.8, 1.0), law.density);
     grain.x = pitch * (column % 3 - 1);
-    grain.y = pitch * (column / 3 - 1);
+    grain.y = pitch * (row - 1);
     grain.z = 4e-3 + pitch * layer;
     grain.vx = random.uniform(-0.2, 0.2);
     grain.wz = random.uniform(-20.0, 20.0);
