@@ -33,7 +33,7 @@ void CellGrid::lay_out(const Grains& grains, const Vec3& period, double edge) {
       high = std::max(high, g.*coordinates[a]);
     }
     if (periods[a] > 0.0) low = 0.0, high = periods[a];
-    const double length = high > low ? high - low : 1.0;
+    const double length = high > low ? high - low : edge;
     const int cells = std::clamp(static_cast<int>(length / edge), 1, most_cells);
     axes_[a] = {low, length / cells, periods[a], cells};
   }
