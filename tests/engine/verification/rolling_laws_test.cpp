@@ -14,7 +14,7 @@ namespace {
 
 constexpr double g = 9.81;
 constexpr double mu = 0.02;
-constexpr double spin = 60.0;  // rad/s
+constexpr double initial_spin = 60.0;  // rad/s
 constexpr double time_step = 1e-5;
 
 enum class Form { relative, elastic, own };
@@ -84,11 +84,11 @@ TEST_CASE("a grain that spins on a smooth plane is braked by its couple under ev
   // I dw/dt = -mu_r F R, the same at a wall for all: w = w0 - (5/2) mu_r g t / R.
   for (const Form form : {Form::relative, Form::elastic, Form::own}) {
     World world = stack(law_of(form), 1);
-    world.row(0).wy = spin;
+    world.row(0).wy = initial_spin;
     run(world, 0.1);
     const double r = world.grains().rows[0].radius;
     verify(std::string("spin on a plane, rad/s, ") + form_names[static_cast<int>(form)],
-           spin - 2.5 * mu * g * 0.1 / r,
+           initial_spin - 2.5 * mu * g * 0.1 / r,
            world.grains().rows[0].wy,
            relative(0.01));
   }
@@ -98,13 +98,14 @@ TEST_CASE("stacked grains of opposite spins brake one another", "[engine][verifi
   // The upper grain: dw/dt = (5/2) mu_r g r_cap / R^2, r_cap = R / 2 (reduced) or R (own).
   for (const Form form : {Form::relative, Form::elastic, Form::own}) {
     World world = stack(law_of(form), 2);
-    for (std::size_t k = 0; k < 2; ++k) world.row(k).wy = world.row(k).z < 5e-3 ? -spin : spin;
+    for (std::size_t k = 0; k < 2; ++k)
+      world.row(k).wy = world.row(k).z < 5e-3 ? -initial_spin : initial_spin;
     run(world, 0.1);
     const double r = world.grains().rows[0].radius;
     const double share = form == Form::own ? 1.0 : 0.5;
     verify(
         std::string("upper of two of opposite spins, rad/s, ") + form_names[static_cast<int>(form)],
-        spin - 2.5 * share * mu * g * 0.1 / r,
+        initial_spin - 2.5 * share * mu * g * 0.1 / r,
         grain_of(world, 1).wy,
         relative(0.01));
   }
@@ -112,7 +113,7 @@ TEST_CASE("stacked grains of opposite spins brake one another", "[engine][verifi
 
 TEST_CASE("only the own-spin law brakes grains that turn as one", "[engine][verification]") {
   for (const Form form : {Form::relative, Form::elastic, Form::own}) {
-    const Braked alike = press(form, spin, spin);
+    const Braked alike = press(form, initial_spin, initial_spin);
     CAPTURE(form_names[static_cast<int>(form)]);
     CHECK(alike.of_first == alike.of_second);
     CHECK((alike.of_first < 0.0) == (form == Form::own));
@@ -121,10 +122,10 @@ TEST_CASE("only the own-spin law brakes grains that turn as one", "[engine][veri
 }
 
 TEST_CASE("only the own-spin law leaves a grain at rest alone", "[engine][verification]") {
-  const Braked own = press(Form::own, spin, 0.0);
+  const Braked own = press(Form::own, initial_spin, 0.0);
   CHECK(own.of_first < 0.0);
   CHECK(own.of_second == 0.0);
-  const Braked relative_law = press(Form::relative, spin, 0.0);
+  const Braked relative_law = press(Form::relative, initial_spin, 0.0);
   CHECK(relative_law.of_second == Approx(-relative_law.of_first));
 }
 
@@ -135,9 +136,9 @@ TEST_CASE("the own-spin couple is the cap on the arm, of any size of grain",
   GrainRow a = sphere(0.5 * law.diameter, law.density);
   GrainRow b = sphere(law.diameter, law.density);
   const double overlap = 1e-3 * a.radius;
-  a.wx = spin;
-  a.wz = spin;  // twist and roll alike
-  b.wy = spin;
+  a.wx = initial_spin;
+  a.wz = initial_spin;  // twist and roll alike
+  b.wy = initial_spin;
   b.z = a.radius + b.radius - overlap;
   world.add(a);
   world.add(b);
