@@ -25,6 +25,7 @@ double folded(double x, double period) {
 
 void CellGrid::lay_out(const Grains& grains, const Vec3& period, double edge) {
   const std::array<double, 3> periods{period.x, period.y, period.z};
+  std::array<double, 3> lows{}, lengths{};
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     double low = std::numeric_limits<double>::max();
     double high = std::numeric_limits<double>::lowest();
@@ -33,9 +34,18 @@ void CellGrid::lay_out(const Grains& grains, const Vec3& period, double edge) {
       high = std::max(high, g.*coordinates[a]);
     }
     if (periods[a] > 0.0) low = 0.0, high = periods[a];
-    const double length = high > low ? high - low : edge;
-    const int cells = std::clamp(static_cast<int>(length / edge), 1, most_cells);
-    axes_[a] = {low, length / cells, periods[a], cells};
+    lows[a] = low;
+    lengths[a] = high > low ? high - low : edge;
+  }
+  // Few grains far apart get larger cells, so that a scene never has many more cells than grains.
+  const std::size_t most = 1000 + 8 * grains.size();
+  for (std::size_t cells = most + 1; cells > most; edge *= 2.0) {
+    cells = 1;
+    for (std::size_t a = 0; a < axes_.size(); ++a) {
+      const int count = std::clamp(static_cast<int>(lengths[a] / edge), 1, most_cells);
+      axes_[a] = {lows[a], lengths[a] / count, periods[a], count};
+      cells *= static_cast<std::size_t>(count);
+    }
   }
   order_ = {0, 1, 2};
   std::ranges::stable_sort(

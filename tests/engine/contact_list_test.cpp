@@ -76,6 +76,21 @@ TEST_CASE("no touching pair is missing from the list, nor listed twice", "[engin
   }
 }
 
+TEST_CASE("a few small grains far apart cost no more than they are", "[engine]") {
+  Grains grains;
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    GrainRow row = sphere(1e-5, 1000);
+    const double place = k < 2 ? 0.0 : 0.3;  // two pairs that touch
+    row.x = place + (k % 2 == 1 ? 1.9e-5 : 0.0);
+    row.y = row.z = place;
+    grains.rows.push_back(row);
+    grains.ids.push_back(k);
+  }
+  ContactList list(0);
+  list.rebuild(grains, {}, {}, 0.0);  // a cell for every grain's size would be 1e9 cells
+  CHECK(listed(list, grains) == Names{{0, 1}, {2, 3}});
+}
+
 TEST_CASE("the list stays complete until a grain has moved by its skin", "[engine]") {
   Grains grains = scattered(400, 0.04, 0.6, 9);
   ContactList list(0);
