@@ -7,6 +7,7 @@
 /// their rows.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,6 +27,13 @@ struct Candidates {
   std::vector<double> history;       ///< history_columns per candidate, and one number more
 
   [[nodiscard]] std::size_t size() const { return i.size(); }
+  /// Forgets the contact of a candidate that has opened.
+  void open(std::uint32_t candidate, int history_columns) {
+    closed[candidate] = 0;
+    std::fill_n(history.begin() + static_cast<std::ptrdiff_t>(candidate) * history_columns,
+                history_columns,
+                0.0);
+  }
 };
 
 class ContactList {

@@ -56,12 +56,6 @@ Sides sides_of(const Period& period) {
   return bits_of(x * x + y * y + z * z < reach * reach);
 }
 
-/// Forgets the contact of a candidate that has opened.
-void open(Candidates& c, int columns, std::uint32_t k) {
-  c.closed[k] = 0;
-  std::fill_n(c.history.begin() + static_cast<std::ptrdiff_t>(k) * columns, columns, 0.0);
-}
-
 /// Applies the law to the first contacts that wait, at most a block of them.
 [[gnu::always_inline]] inline void push_block(PairPass& p, Waiting& waiting) {
   ContactBlock& c = p.block;
@@ -118,7 +112,7 @@ void open(Candidates& c, int columns, std::uint32_t k) {
     waiting.count += touches ? 1 : 0;
     __builtin_prefetch(p.loads + j[q], 1);
     if (!touches && p.candidates.closed[first + q] != 0) {
-      open(p.candidates, p.history_columns, first + q);
+      p.candidates.open(first + q, p.history_columns);
     }
   }
 }

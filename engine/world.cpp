@@ -4,15 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/lanes.hpp"
 #include "engine/motion.hpp"
 #include "engine/pair_pass.hpp"
+#include "engine/wall_pass.hpp"
 
 namespace repose::engine {
 
 namespace {
-
-constexpr int width = ContactBlock::width;
 
 /// Steps a grain may fly before its skin is used up: long enough to spread the cost of a search,
 /// short enough to keep the list of a falling stream small.
@@ -28,37 +26,6 @@ double image(double d, double period, double half_period) {
   d -= d > half_period ? period : 0.0;
   d += d < -half_period ? period : 0.0;
   return d;
-}
-
-/// A point of a wall as the other end of a contact: no size, no spin, no give.
-[[gnu::always_inline]] inline void set_wall_end(ContactBlock::End& end,
-                                                int lane,
-                                                const Vec3& point,
-                                                const Vec3& velocity) {
-  end.x[lane] = point.x;
-  end.y[lane] = point.y;
-  end.z[lane] = point.z;
-  end.vx[lane] = velocity.x;
-  end.vy[lane] = velocity.y;
-  end.vz[lane] = velocity.z;
-}
-
-/// What all ends at walls share, and the idle lanes' partner.
-void clear_wall_ends(ContactBlock::End& end, int count) {
-  for (auto* column :
-       {&end.x, &end.y, &end.z, &end.vx, &end.vy, &end.vz, &end.wx, &end.wy, &end.wz}) {
-    column->fill(0.0);
-  }
-  for (int lane = 0; lane < width; ++lane) {
-    end.radius[lane] = lane < count ? 0.0 : idle_j.radius;
-    end.inverse_mass[lane] = lane < count ? 0.0 : idle_j.inverse_mass;
-  }
-}
-
-/// Forgets the contact of a candidate that has opened.
-void open(Candidates& candidates, int columns, std::uint32_t k) {
-  candidates.closed[k] = 0;
-  std::fill_n(candidates.history.begin() + static_cast<std::ptrdiff_t>(k) * columns, columns, 0.0);
 }
 
 }  // namespace
@@ -153,23 +120,6 @@ void World::rebuild() {
   ++rebuilds_;
 }
 
-void World::find_closed_walls() {
-  Candidates& w = list_.walls;
-  for (auto& closed : closed_walls_) closed.clear();
-  for (std::uint32_t k = 0; k < w.size(); ++k) {
-    const GrainRow& a = grains_.rows[w.i[k]];
-    const Surface& surface = surfaces_[w.j[k]];
-    const Vec3 d = offset_from(surface, a.centre());
-    const double squared = dot(d, d);
-    if (squared < a.radius * a.radius && squared > 0.0) {
-      closed_walls_[static_cast<std::size_t>(surface.material)].push_back({k, d});
-      ++closed_;
-    } else if (w.closed[k] != 0) {
-      open(w, list_.history_columns(), k);
-    }
-  }
-}
-
 void World::push_pairs() {
   PairPass pass{.law = model_.law(MaterialId::grain),
                 .period = {options_.period.x, options_.period.y},
@@ -184,50 +134,16 @@ void World::push_pairs() {
 }
 
 void World::push_walls() {
-  Candidates& w = list_.walls;
-  const int columns = list_.history_columns();
-  ContactBlock& c = *block_;
-  alignas(64) std::array<double, width * most_history_columns> history;
-  for (std::size_t material = 0; material < closed_walls_.size(); ++material) {
-    const PairLaw& law = model_.law(static_cast<MaterialId>(material));
-    const std::vector<ClosedWall>& closed = closed_walls_[material];
-    for (std::size_t first = 0; first < closed.size(); first += width) {
-      c.count = static_cast<int>(std::min<std::size_t>(width, closed.size() - first));
-      const ClosedWall* const block = closed.data() + first;
-      for (int lane = 0; lane < c.count; lane += lanes_at_once) {
-        std::array<const GrainRow*, 4> rows{};
-        std::array<std::uint32_t, 4> k{};
-        for (int q = 0; q < lanes_at_once; ++q) {
-          const bool idle = lane + q >= c.count;
-          const auto n = static_cast<std::size_t>(q);
-          k[n] = block[idle ? lane : lane + q].candidate;
-          rows[n] = idle ? &idle_i : &grains_.rows[w.i[k[n]]];
-        }
-        to_lanes(rows, c.i, lane);
-        history_to_lanes(w.history.data(), columns, k, lane, history.data());
-      }
-      idle_rest(c, columns, history.data());
-      clear_wall_ends(c.j, c.count);
-      for (int lane = 0; lane < c.count; ++lane) {
-        const std::uint32_t k = block[lane].candidate;
-        const Vec3 point = grains_.rows[w.i[k]].centre() - block[lane].offset;
-        set_wall_end(c.j, lane, point, surfaces_[w.j[k]].velocity);
-      }
-      apply(law, Partner::wall, c, HistoryBlock(history.data()), options_.time_step);
-      for (int lane = 0; lane < c.count; ++lane) {
-        const std::uint32_t k = block[lane].candidate;
-        GrainLoad& load = grains_.loads[w.i[k]];
-        load.fx += c.force.x[lane];
-        load.fy += c.force.y[lane];
-        load.fz += c.force.z[lane];
-        load.tx += c.torque_i.x[lane];
-        load.ty += c.torque_i.y[lane];
-        load.tz += c.torque_i.z[lane];
-        w.closed[k] = 1;
-        history_from_lane(history.data(), lane, w.history.data(), columns, k);
-      }
-    }
-  }
+  WallPass pass{.model = model_,
+                .surfaces = surfaces_,
+                .dt = options_.time_step,
+                .rows = grains_.rows.data(),
+                .loads = grains_.loads.data(),
+                .candidates = list_.walls,
+                .history_columns = list_.history_columns(),
+                .block = *block_};
+  engine::push_walls(pass);
+  closed_ += pass.closed;
 }
 
 /// Members of clumps have no motion of their own: what they get with the others is overwritten.
@@ -249,7 +165,6 @@ void World::step() {
   }
   closed_ = 0;
   push_pairs();
-  find_closed_walls();
   push_walls();
   if (turn_rate_ != 0.0) {
     const double angle = turn_rate_ * (time_ - turn_start_);

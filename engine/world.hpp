@@ -90,15 +90,8 @@ class World {
   [[nodiscard]] double bytes_per_grain() const;
 
  private:
-  /// A wall candidate that touches, and the way from the wall to the grain's centre.
-  struct ClosedWall {
-    std::uint32_t candidate;
-    Vec3 offset;
-  };
-
   std::uint32_t add_row(const GrainRow& row);
   void rebuild();
-  void find_closed_walls();
   void push_pairs();
   void push_walls();
   void move();
@@ -112,7 +105,6 @@ class World {
   Clumps clumps_;
   std::vector<Surface> surfaces_;
   ContactList list_;
-  std::array<std::vector<ClosedWall>, 2> closed_walls_;  ///< the same by the wall's material
   std::unique_ptr<ContactBlock> block_;
   bool stale_ = true;      ///< the list must be made anew
   bool outlived_ = false;  ///< some grain has moved by its skin

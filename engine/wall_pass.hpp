@@ -1,0 +1,28 @@
+/// WallPass: a step's forces between grains and walls. As for pairs, but the other end of a contact
+/// is the nearest point of a surface.
+#pragma once
+
+#include <span>
+
+#include "engine/boundary.hpp"
+#include "engine/contact_list.hpp"
+#include "engine/contact_model.hpp"
+#include "engine/grains.hpp"
+
+namespace repose::engine {
+
+struct WallPass {
+  const ContactModel& model;
+  std::span<const Surface> surfaces;
+  double dt;  ///< s
+  const GrainRow* rows;
+  GrainLoad* loads;
+  Candidates& candidates;
+  int history_columns;
+  ContactBlock& block;     ///< room to work in
+  std::size_t closed = 0;  ///< contacts found
+};
+
+void push_walls(WallPass& pass);
+
+}  // namespace repose::engine
