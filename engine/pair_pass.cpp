@@ -56,43 +56,57 @@ Sides sides_of(const Period& period) {
   return bits_of(x * x + y * y + z * z < reach * reach);
 }
 
-/// Applies the law to the first contacts that wait, at most a block of them.
-[[gnu::always_inline]] inline void push_block(PairPass& p, Waiting& waiting) {
+/// Gathers four lanes of a block. Lanes from `used` on are idle.
+[[gnu::always_inline]] inline void gather(
+    PairPass& p, const Waiting& waiting, int lane, int used, int columns, double* history) {
+  const Candidates& all = p.candidates;
+  std::array<const GrainRow*, 4> i{};
+  std::array<const GrainRow*, 4> j{};
+  std::array<std::uint32_t, 4> k{};
+  for (std::size_t q = 0; q < 4; ++q) {
+    const bool idle = static_cast<int>(q) >= used;
+    k[q] = waiting.candidates[static_cast<std::size_t>(lane) + (idle ? 0 : q)];
+    i[q] = idle ? &idle_i : p.rows + all.i[k[q]];
+    j[q] = idle ? &idle_j : p.rows + all.j[k[q]];
+  }
+  to_lanes(i, p.block.i, lane);
+  to_lanes(j, p.block.j, lane);
+  history_to_lanes(all.history.data(), columns, k, lane, history);
+}
+
+/// Gives four lanes of a block to the grains, as far as they are used.
+[[gnu::always_inline]] inline void scatter(
+    PairPass& p, const Waiting& waiting, int lane, int used, int columns, const double* history) {
+  Candidates& all = p.candidates;
+  const auto force = from_lanes(p.block.force, lane);
+  const auto torque_i = from_lanes(p.block.torque_i, lane);
+  const auto torque_j = from_lanes(p.block.torque_j, lane);
+  for (std::size_t q = 0; q < static_cast<std::size_t>(used); ++q) {
+    const std::uint32_t k = waiting.candidates[static_cast<std::size_t>(lane) + q];
+    receive(p.loads[all.i[k]], force[q], torque_i[q]);
+    receive(p.loads[all.j[k]], -force[q], torque_j[q]);
+    all.closed[k] = 1;
+    history_from_lane(history, lane + static_cast<int>(q), all.history.data(), columns, k);
+  }
+}
+
+/// Applies the law to the first contacts that wait, at most a block of them. Numbers that are known
+/// when this is compiled make whole quads fast.
+[[gnu::always_inline]] inline void push_block(PairPass& p, Waiting& waiting, int columns) {
   ContactBlock& c = p.block;
   c.count = std::min(waiting.count, width);
+  const int whole = c.count - c.count % lanes_at_once;
   alignas(64) std::array<double, width * most_history_columns> history;
-  Candidates& all = p.candidates;
-  for (int lane = 0; lane < c.count; lane += lanes_at_once) {
-    std::array<const GrainRow*, 4> i{};
-    std::array<const GrainRow*, 4> j{};
-    std::array<std::uint32_t, 4> k{};
-    for (int q = 0; q < lanes_at_once; ++q) {
-      const auto n = static_cast<std::size_t>(q);
-      const bool idle = lane + q >= c.count;
-      k[n] = waiting.candidates[static_cast<std::size_t>(idle ? lane : lane + q)];
-      i[n] = idle ? &idle_i : p.rows + all.i[k[n]];
-      j[n] = idle ? &idle_j : p.rows + all.j[k[n]];
-    }
-    to_lanes(i, c.i, lane);
-    to_lanes(j, c.j, lane);
-    history_to_lanes(all.history.data(), p.history_columns, k, lane, history.data());
+  for (int lane = 0; lane < whole; lane += lanes_at_once) {
+    gather(p, waiting, lane, lanes_at_once, columns, history.data());
   }
-  idle_rest(c, p.history_columns, history.data());
+  if (whole < c.count) gather(p, waiting, whole, c.count - whole, columns, history.data());
+  idle_rest(c, columns, history.data());
   apply(p.law, Partner::grain, c, HistoryBlock(history.data()), p.dt);
-  for (int lane = 0; lane < c.count; lane += lanes_at_once) {
-    const auto force = from_lanes(c.force, lane);
-    const auto torque_i = from_lanes(c.torque_i, lane);
-    const auto torque_j = from_lanes(c.torque_j, lane);
-    const int lanes = std::min(lanes_at_once, c.count - lane);
-    for (int q = 0; q < lanes; ++q) {
-      const auto n = static_cast<std::size_t>(q);
-      const std::uint32_t k = waiting.candidates[static_cast<std::size_t>(lane + q)];
-      receive(p.loads[all.i[k]], force[n], torque_i[n]);
-      receive(p.loads[all.j[k]], -force[n], torque_j[n]);
-      all.closed[k] = 1;
-      history_from_lane(history.data(), lane + q, all.history.data(), p.history_columns, k);
-    }
+  for (int lane = 0; lane < whole; lane += lanes_at_once) {
+    scatter(p, waiting, lane, lanes_at_once, columns, history.data());
   }
+  if (whole < c.count) scatter(p, waiting, whole, c.count - whole, columns, history.data());
   waiting.count -= c.count;
   std::copy_n(waiting.candidates.begin() + c.count, lanes_at_once, waiting.candidates.begin());
 }
@@ -117,7 +131,7 @@ Sides sides_of(const Period& period) {
   }
 }
 
-inline void push_all(PairPass& p) {
+[[gnu::always_inline]] inline void push_with(PairPass& p, int columns) {
   const Candidates& all = p.candidates;
   const Sides sides = sides_of(p.period);
   const auto n = static_cast<std::uint32_t>(all.size());
@@ -128,7 +142,7 @@ inline void push_all(PairPass& p) {
     visit(p, waiting, sides, all.i.data() + first, all.j.data() + first, first, lanes_at_once);
     if (waiting.count < width) continue;
     p.closed += width;
-    push_block(p, waiting);
+    push_block(p, waiting, columns);
   }
   std::array<std::uint32_t, 4> i{};
   std::array<std::uint32_t, 4> j{};
@@ -137,7 +151,19 @@ inline void push_all(PairPass& p) {
   if (n > 0) visit(p, waiting, sides, i.data(), j.data(), whole, n - whole);
   while (waiting.count > 0) {
     p.closed += static_cast<std::size_t>(std::min(waiting.count, width));
-    push_block(p, waiting);
+    push_block(p, waiting, columns);
+  }
+}
+
+/// Most laws carry three columns of history or six.
+inline void push_all(PairPass& p) {
+  switch (p.history_columns) {
+    case 3:
+      return push_with(p, 3);
+    case 6:
+      return push_with(p, 6);
+    default:
+      return push_with(p, p.history_columns);
   }
 }
 
