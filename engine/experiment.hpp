@@ -93,6 +93,8 @@ struct Effort {
   double time_step = 0.0;         ///< s
   double simulated_seconds = 0.0;
   double largest_overlap = 0.0;  ///< of two grains or grain and wall, over the radius, 1
+  std::uint64_t contacts = 0;    ///< closed at the end
+  double bytes_per_grain = 0.0;  ///< of memory, at the end
 };
 
 struct Evaluation {

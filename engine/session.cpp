@@ -270,7 +270,9 @@ Effort Session::effort() const {
           .rebuilds = world_->rebuilds(),
           .time_step = world_->time_step(),
           .simulated_seconds = world_->time(),
-          .largest_overlap = largest_overlap_};
+          .largest_overlap = largest_overlap_,
+          .contacts = world_->contacts(),
+          .bytes_per_grain = world_->bytes_per_grain()};
 }
 
 }  // namespace repose::engine

@@ -197,6 +197,35 @@ void add_serve(CLI::App& app, ServeCommand& options, Work& work) {
   });
 }
 
+void add_bench(CLI::App& app, BenchCommand& options, Work& work) {
+  CLI::App& bench = *app.add_subcommand("bench", "Measure how fast this machine is");
+  bench.require_subcommand(1);
+  CLI::App& command = *bench.add_subcommand("engine", "The engine, on beds of the reference grain");
+  command.add_option("--scene", options.scenes, "Which (default: all)")
+      ->check(CLI::IsMember(options.scenes))
+      ->expected(1)
+      ->take_all();
+  command
+      .add_option("--grains", options.grains, "Of the static bed: up to 5000, or a multiple of it")
+      ->capture_default_str()
+      ->check(CLI::Range(200, 1000000))
+      ->check(
+          [](const std::string& text) {
+            const unsigned long grains = std::stoul(text);
+            return grains <= 5000 || grains % 5000 == 0
+                       ? std::string()
+                       : text + " is more than 5000 and no multiple of it";
+          },
+          "",
+          "tiles");
+  command.add_flag("--stiff", options.stiff, "Grains of 41.7 MPa in place of 1.04 MPa");
+  command.add_option("--rounds", options.rounds, "Times each scene is measured")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  add_json(command, options.form, "One JSON object on standard output");
+  command.callback([&] { work = [&] { return bench_engine_command(options); }; });
+}
+
 void add_catalogue(CLI::App& app, Form& form, SchemaCommand& options, Work& work) {
   CLI::App& catalogue =
       *app.add_subcommand("catalogue", "Print every effect, experiment and material property");
@@ -222,6 +251,7 @@ struct Commands {
   ListCommand list;
   ShowCommand show;
   ServeCommand serve;
+  BenchCommand bench;
   Form catalogue_form = Form::json;
   SchemaCommand schema;
 };
@@ -260,6 +290,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_serve(app, commands.serve, work);
   add_list(app, commands.list, work);
   add_show(app, commands.show, work);
+  add_bench(app, commands.bench, work);
   add_catalogue(app, commands.catalogue_form, commands.schema, work);
   CLI::App& answer = *app.add_subcommand("answer", "Answer one trial from standard input");
   answer.group("");  // hidden: for the worker pool

@@ -72,6 +72,15 @@ struct ServeCommand {
 };
 int serve_command(const ServeCommand& command);
 
+struct BenchCommand {
+  std::vector<std::string> scenes{"static", "kettle", "tilting_box"};
+  std::uint64_t grains = 5000;  ///< of the static scene
+  bool stiff = false;
+  int rounds = 3;
+  Form form = Form::text;
+};
+int bench_engine_command(const BenchCommand& command);
+
 int catalogue_command(Form form);
 
 struct SchemaCommand {

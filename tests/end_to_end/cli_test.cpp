@@ -131,6 +131,19 @@ TEST_CASE("a file or address that cannot be used is exit code 2 and says why", "
   CHECK_THAT(address.output, Contains("cannot listen on 192.0.2.1") && Contains("--port"));
 }
 
+TEST_CASE("the engine's speed is measured and told as one JSON object", "[end_to_end]") {
+  const Ran ran = repose("bench engine --scene static --grains 300 --rounds 2 --json");
+  CHECK(ran.exit_code == 0);
+  const auto scenes = nlohmann::json::parse(ran.output)["scenes"];
+  REQUIRE(scenes.size() == 1);
+  CHECK(scenes[0]["scene"] == "static");
+  CHECK(scenes[0]["grains"] == 300);
+  CHECK(scenes[0]["contacts_per_grain"] > 1.5);
+  CHECK(scenes[0]["slowest"] <= scenes[0]["particle_steps_per_second"]);
+  CHECK(repose("bench engine --scene static --grains 7001").exit_code == 2);
+  CHECK(repose("bench engine --scene silo").exit_code == 2);
+}
+
 TEST_CASE("help and version are no errors", "[end_to_end]") {
   CHECK(repose("--help").exit_code == 0);
   CHECK(repose("evaluate --help").exit_code == 0);
