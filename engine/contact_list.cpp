@@ -5,20 +5,22 @@
 #include <cmath>
 #include <iterator>
 
+#include "engine/wall_motion.hpp"
+
 namespace repose::engine {
 
 namespace {
 
 /// Smallest skin over the radius. A settled bed then lists little more than its contacts.
 constexpr double least_skin = 0.03;
+/// The same of a wall that moves: it has few grains near it, and a move of it makes all look again.
+constexpr double least_wall_skin = 0.25;
 /// Grains looked at again before all are: enough to outlast a stream's impacts, few enough to keep
 /// the list short and ordered.
 constexpr std::size_t most_repaired = 128;
 
 bool is_near(const Surface& surface, const GrainRow& grain, double skin) {
-  const Vec3 d = offset_from(surface, grain.centre());
-  const double near = grain.radius + skin;
-  return dot(d, d) < near * near;
+  return is_within(surface, grain.centre(), grain.radius + skin);
 }
 
 }  // namespace
@@ -114,7 +116,7 @@ void ContactList::find_walls(const Grains& grains, std::span<const Surface> surf
   walls.j.clear();
   for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
     for (std::uint32_t k = 0; k < grains.size(); ++k) {
-      if (!is_near(surfaces[s], grains.rows[k], skins_[k])) continue;
+      if (!is_near(surfaces[s], grains.rows[k], skins_[k] + wall_skins_[s])) continue;
       walls.i.push_back(k);
       walls.j.push_back(s);
     }
@@ -141,6 +143,12 @@ void ContactList::rebuild(Grains& grains,
   find_pairs(grains);
   if (!body_of_id.empty()) drop_pairs_within_bodies(grains, body_of_id);
   recall(pair_memory, pairs, grains, Partner::grain);
+  wall_skins_.clear();
+  wall_skins_.reserve(surfaces.size());
+  for (const Surface& surface : surfaces) {
+    const double speed = fastest(surface);
+    wall_skins_.push_back(speed > 0.0 ? std::max(least_wall_skin * largest, speed * horizon) : 0.0);
+  }
   find_walls(grains, surfaces);
   recall(wall_memory, walls, grains, Partner::wall);
 }
@@ -205,7 +213,8 @@ bool ContactList::repair(const Grains& grains,
       near.push_back(grains.ids[a] < grains.ids[b] ? key(a, b) : key(b, a));
     }
     for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
-      if (is_near(surfaces[s], grains.rows[k], skins_[k])) near_walls.push_back(key(k, s));
+      if (is_near(surfaces[s], grains.rows[k], skins_[k] + wall_skins_[s]))
+        near_walls.push_back(key(k, s));
     }
   }
   const auto add_new = [&](std::vector<std::uint64_t>& found, Candidates& list, Partner partner) {

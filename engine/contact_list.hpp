@@ -1,10 +1,10 @@
 /// ContactList: who may touch whom, and the history of those who do.
 ///
 /// Candidates are pairs nearer than their skins; they stay valid until a grain has moved by its own
-/// skin. A grain's skin grows with its speed, so that a falling stream does not force the settled
-/// bed to be searched again and again. History lives beside its candidate and is carried across
-/// rebuilds by the permanent ids; of two grains, the one with the smaller id is end i, whatever
-/// their rows.
+/// skin, or a wall by its. A grain's skin grows with its speed, so that a falling stream does not
+/// force the settled bed to be searched again and again. History lives beside its candidate and is
+/// carried across rebuilds by the permanent ids; of two grains, the one with the smaller id is end
+/// i, whatever their rows.
 #pragma once
 
 #include <algorithm>
@@ -56,6 +56,9 @@ class ContactList {
               double horizon,
               std::span<const std::uint32_t> body_of_id = {});
 
+  /// How far each wall may move before the list is no longer valid, m.
+  [[nodiscard]] std::span<const double> wall_skins() const { return wall_skins_; }
+
   /// Where a grain was when it was last looked at.
   struct Anchor {
     double x, y, z;       ///< m
@@ -99,6 +102,7 @@ class ContactList {
   CellGrid grid_;
   double slowest_skin_ = 0.0;
   std::vector<double> skins_;
+  std::vector<double> wall_skins_;
   std::size_t repaired_ = 0;  ///< grains looked at again since the last rebuild
   std::vector<Anchor> anchors_;
 };

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/triangle.hpp"
 #include "engine/vec3.hpp"
 
 namespace repose::engine {
@@ -18,12 +19,14 @@ struct FrameGrain {
   std::uint64_t id = 0;  ///< stays with the grain through the run
 };
 
-/// A wall as a curve in a half plane that is swept round the z axis or along y.
+/// A wall as a curve in a half plane that is swept round an upright axis or along y, or as
+/// triangles.
 struct FrameWall {
   bool revolved = false;              ///< swept round z; else along y
   double from_s = 0.0, from_z = 0.0;  ///< m; s is the radius (revolved) or x
   double to_s = 0.0, to_z = 0.0;
   double centre_x = 0.0, centre_y = 0.0;
+  std::vector<Triangle> triangles;  ///< instead of the curve, where there are any
 };
 
 struct Frame {

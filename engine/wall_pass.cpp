@@ -14,9 +14,20 @@ constexpr int width = ContactBlock::width;
 /// Contacts with walls of one material that wait until they fill a block.
 struct Waiting {
   std::array<std::uint32_t, width> candidates{};
-  std::array<GrainRow, width> points{};  ///< of the walls: no size, no spin, no give
+  std::array<GrainRow, width> points{};  ///< of the walls: no size, no give
   int count = 0;
 };
+
+/// The opposite of what a grain receives at a point, and the wall's own couple.
+inline void receive(WallLoad& load,
+                    const Quad& force,
+                    const Quad& couple,
+                    const GrainRow& point,
+                    const Vec3& pivot) {
+  const Vec3 on_grain{force[0], force[1], force[2]};
+  load.force -= on_grain;
+  load.torque += Vec3{couple[0], couple[1], couple[2]} - cross(point.centre() - pivot, on_grain);
+}
 
 [[gnu::always_inline]] inline void push_block(WallPass& p, MaterialId material, Waiting& waiting) {
   ContactBlock& c = p.block;
@@ -44,11 +55,15 @@ struct Waiting {
   for (int lane = 0; lane < c.count; lane += lanes_at_once) {
     const auto force = from_lanes(c.force, lane);
     const auto torque = from_lanes(c.torque_i, lane);
+    const auto couple = from_lanes(c.torque_j, lane);
     const int lanes = std::min(lanes_at_once, c.count - lane);
     for (int q = 0; q < lanes; ++q) {
       const auto n = static_cast<std::size_t>(q);
-      const std::uint32_t k = waiting.candidates[static_cast<std::size_t>(lane + q)];
+      const auto at = static_cast<std::size_t>(lane + q);
+      const std::uint32_t k = waiting.candidates[at];
+      const std::uint32_t s = all.j[k];
       receive(p.loads[all.i[k]], force[n], torque[n]);
+      receive(p.wall_loads[s], force[n], couple[n], waiting.points[at], p.surfaces[s].pivot);
       all.closed[k] = 1;
       history_from_lane(history.data(), lane + q, all.history.data(), p.history_columns, k);
     }
@@ -62,7 +77,7 @@ inline void push_all(WallPass& p) {
   for (std::uint32_t k = 0; k < all.size(); ++k) {
     const GrainRow& grain = p.rows[all.i[k]];
     const Surface& surface = p.surfaces[all.j[k]];
-    const Vec3 offset = offset_from(surface, grain.centre());
+    const Vec3 offset = offset_from(surface, grain.centre(), grain.radius);
     const double squared = dot(offset, offset);
     if (squared >= grain.radius * grain.radius || squared <= 0.0) {
       if (all.closed[k] != 0) all.open(k, p.history_columns);
@@ -71,13 +86,17 @@ inline void push_all(WallPass& p) {
     Waiting& own = waiting[static_cast<std::size_t>(surface.material)];
     const auto at = static_cast<std::size_t>(own.count++);
     const Vec3 point = grain.centre() - offset;
+    const Vec3 velocity = velocity_at(surface, point);
     own.candidates[at] = k;
     own.points[at] = {.x = point.x,
                       .y = point.y,
                       .z = point.z,
-                      .vx = surface.velocity.x,
-                      .vy = surface.velocity.y,
-                      .vz = surface.velocity.z};
+                      .vx = velocity.x,
+                      .vy = velocity.y,
+                      .vz = velocity.z,
+                      .wx = surface.spin.x,
+                      .wy = surface.spin.y,
+                      .wz = surface.spin.z};
     ++p.closed;
     if (own.count == width) push_block(p, surface.material, own);
   }

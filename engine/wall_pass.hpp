@@ -8,6 +8,7 @@
 #include "engine/contact_list.hpp"
 #include "engine/contact_model.hpp"
 #include "engine/grains.hpp"
+#include "engine/wall_motion.hpp"
 
 namespace repose::engine {
 
@@ -17,6 +18,7 @@ struct WallPass {
   double dt;  ///< s
   const GrainRow* rows;
   GrainLoad* loads;
+  std::span<WallLoad> wall_loads;  ///< one for each surface; added to
   Candidates& candidates;
   int history_columns;
   ContactBlock& block;     ///< room to work in

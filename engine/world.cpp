@@ -103,6 +103,12 @@ std::vector<Surface>& World::change_surfaces() {
   return surfaces_;
 }
 
+void World::drive(std::size_t surface, const Vec3& velocity, const Vec3& spin) {
+  surfaces_[surface].velocity = velocity;
+  surfaces_[surface].spin = spin;
+  walls_move_ = walls_move_ || fastest(surfaces_[surface]) > 0.0;
+}
+
 void World::turn_gravity(double rate) {
   turn_rate_ = rate;
   turn_start_ = time_;
@@ -116,6 +122,8 @@ void World::rebuild() {
                 clumps_.bodies_of_ids());
   if (!clumps_.empty()) clumps_.locate(grains_, options_.period);
   grains_.loads.resize(grains_.size());
+  travelled_.assign(surfaces_.size(), 0.0);
+  walls_move_ = std::ranges::any_of(surfaces_, [](const Surface& s) { return fastest(s) > 0.0; });
   stale_ = false;
   ++rebuilds_;
 }
@@ -134,11 +142,13 @@ void World::push_pairs() {
 }
 
 void World::push_walls() {
+  wall_loads_.assign(surfaces_.size(), {});
   WallPass pass{.model = model_,
                 .surfaces = surfaces_,
                 .dt = options_.time_step,
                 .rows = grains_.rows.data(),
                 .loads = grains_.loads.data(),
+                .wall_loads = wall_loads_,
                 .candidates = list_.walls,
                 .history_columns = list_.history_columns(),
                 .block = *block_};
@@ -157,6 +167,16 @@ void World::move() {
   outlived_ = outlived_ || list_.outlived(grains_, clumps_.rows());
 }
 
+void World::move_walls() {
+  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+    const double speed = fastest(surfaces_[s]);
+    if (speed == 0.0) continue;
+    advance(surfaces_[s], options_.time_step);
+    travelled_[s] += speed * options_.time_step;
+    stale_ = stale_ || travelled_[s] > list_.wall_skins()[s];
+  }
+}
+
 void World::step() {
   const double horizon = horizon_steps * options_.time_step;
   if (stale_ ||
@@ -172,6 +192,7 @@ void World::step() {
     gravity_ = {g * std::sin(angle), 0.0, -g * std::cos(angle)};
   }
   move();
+  if (walls_move_) move_walls();
   time_ += options_.time_step;
   ++steps_;
   grain_steps_ += grains_.size();
@@ -211,7 +232,7 @@ double World::largest_overlap() const {
   for (std::size_t k = 0; k < list_.walls.size(); ++k) {
     if (list_.walls.closed[k] == 0) continue;
     const GrainRow& a = grains_.rows[list_.walls.i[k]];
-    const Vec3 d = offset_from(surfaces_[list_.walls.j[k]], a.centre());
+    const Vec3 d = offset_from(surfaces_[list_.walls.j[k]], a.centre(), a.radius);
     largest = std::max(largest, 1.0 - norm(d) / a.radius);
   }
   return largest;

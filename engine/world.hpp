@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/boundary.hpp"
@@ -12,6 +13,7 @@
 #include "engine/contact_list.hpp"
 #include "engine/contact_model.hpp"
 #include "engine/grains.hpp"
+#include "engine/wall_motion.hpp"
 
 namespace repose::engine {
 
@@ -45,6 +47,10 @@ class World {
   /// Walls may be changed between steps through this.
   std::vector<Surface>& change_surfaces();
   [[nodiscard]] const std::vector<Surface>& surfaces() const { return surfaces_; }
+  /// Gives a wall another motion, which a servo may do at every step: the neighbour list stays.
+  void drive(std::size_t surface, const Vec3& velocity, const Vec3& spin = {});
+  /// What the grains did to each surface in the last step.
+  [[nodiscard]] std::span<const WallLoad> wall_loads() const { return wall_loads_; }
   /// From now on gravity turns about y, from -z towards +x: a box tilting the other way, rad/s.
   void turn_gravity(double rate);
   [[nodiscard]] const Vec3& gravity() const { return gravity_; }
@@ -95,6 +101,7 @@ class World {
   void push_pairs();
   void push_walls();
   void move();
+  void move_walls();
 
   ContactModel model_;
   WorldOptions options_;
@@ -104,6 +111,9 @@ class World {
   Grains grains_;
   Clumps clumps_;
   std::vector<Surface> surfaces_;
+  std::vector<WallLoad> wall_loads_;
+  std::vector<double> travelled_;  ///< by each wall since the list was made, m
+  bool walls_move_ = false;
   ContactList list_;
   std::unique_ptr<ContactBlock> block_;
   bool stale_ = true;      ///< the list must be made anew
