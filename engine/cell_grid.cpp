@@ -194,7 +194,7 @@ inline void CellGrid::for_lines(const Search& s, double reach, const See& see) c
   }
 }
 
-inline void CellGrid::find_for(Search& s) {
+inline void CellGrid::find_for(Search& s, std::vector<Pair>& found) const {
   const std::uint32_t a = s.row;
   const double skin = spots_.skin[a];
   for (std::size_t place = 0; place < 3; ++place) s.at[place] = fill_quad(spots_.at[place][a]);
@@ -204,8 +204,8 @@ inline void CellGrid::find_for(Search& s) {
   // Its reach covers both skins.
   const double reach = spots_.near[a] + largest_radius_ + skin;
   for_lines(s, reach, [&](std::uint32_t first, std::uint32_t last) {
-    if (!slowest && first <= a) s.scan<false>(spots_, first, std::min(last, a), pairs_);
-    if (last > a) s.scan<true>(spots_, std::max(first, a + 1), last, pairs_);
+    if (!slowest && first <= a) s.scan<false>(spots_, first, std::min(last, a), found);
+    if (last > a) s.scan<true>(spots_, std::max(first, a + 1), last, found);
   });
 }
 
@@ -220,11 +220,14 @@ CellGrid::Search CellGrid::search() const {
   return s;
 }
 
-inline void CellGrid::find_all(CellGrid& grid, std::size_t grains) {
+inline void CellGrid::find_part(const CellGrid& grid,
+                                std::uint32_t first,
+                                std::uint32_t last,
+                                std::vector<Pair>& found) {
   Search search = grid.search();
-  for (std::uint32_t row = 0; row < grains; ++row) {
+  for (std::uint32_t row = first; row < last; ++row) {
     search.row = row;
-    grid.find_for(search);
+    grid.find_for(search, found);
   }
 }
 
@@ -254,12 +257,18 @@ std::span<const CellGrid::Pair> CellGrid::near_pairs_of(std::uint32_t row) {
   return pairs_;
 }
 
-std::span<const CellGrid::Pair> CellGrid::near_pairs(const Grains& grains,
-                                                     std::span<const double> skins) {
+std::span<const std::vector<CellGrid::Pair>> CellGrid::near_pairs(
+    const Grains& grains,
+    std::span<const double> skins,
+    std::span<const std::uint32_t> part_bounds,
+    const Team& team) {
   fill_spots(grains, skins);
-  pairs_.clear();
-  AnyMachine<find_all>::call(*this, grains.size());
-  return pairs_;
+  found_.resize(part_bounds.size() - 1);
+  share(team, found_.size(), [&](std::size_t part) {
+    found_[part].clear();
+    AnyMachine<find_part>::call(*this, part_bounds[part], part_bounds[part + 1], found_[part]);
+  });
+  return found_;
 }
 
 }  // namespace repose::engine

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/grains.hpp"
+#include "engine/team.hpp"
 
 namespace repose::engine {
 
@@ -24,9 +25,13 @@ class CellGrid {
   /// by cells of at least that edge, m.
   void sort(Grains& grains, const Vec3& period, double edge);
 
-  /// Finds every pair nearer than the radii and skins (m) of both, once. The grains are those last
-  /// sorted; the pairs are valid until the next call.
-  std::span<const Pair> near_pairs(const Grains& grains, std::span<const double> skins);
+  /// Finds every pair nearer than the radii and skins (m) of both, once: a list for each part of
+  /// the rows, in which a's row is in that part and grows. The grains are those last sorted; the
+  /// pairs are valid until the next call.
+  std::span<const std::vector<Pair>> near_pairs(const Grains& grains,
+                                                std::span<const double> skins,
+                                                std::span<const std::uint32_t> part_bounds,
+                                                const Team& team);
 
   /// A grain that has moved since the sort: where it is now, and its new skin, m.
   void move(const Grains& grains, std::uint32_t row, double skin);
@@ -64,8 +69,11 @@ class CellGrid {
   [[nodiscard]] Search search() const;
   template <class See>
   void for_lines(const Search& search, double reach, const See& see) const;
-  void find_for(Search& search);
-  static void find_all(CellGrid& grid, std::size_t grains);
+  void find_for(Search& search, std::vector<Pair>& found) const;
+  static void find_part(const CellGrid& grid,
+                        std::uint32_t first,
+                        std::uint32_t last,
+                        std::vector<Pair>& found);
 
   std::array<Axis, 3> axes_;                   ///< x, y, z
   std::array<std::size_t, 3> order_{0, 1, 2};  ///< axes, the one whose cells are adjacent first
@@ -75,7 +83,8 @@ class CellGrid {
   double largest_radius_ = 0.0;
   double smallest_skin_ = 0.0;
   double largest_skin_ = 0.0;
-  std::vector<std::uint32_t> moved_;  ///< rows whose cell may be another than that sorted
+  std::vector<std::uint32_t> moved_;      ///< rows whose cell may be another than that sorted
+  std::vector<std::vector<Pair>> found_;  ///< by part
   std::vector<Pair> pairs_;
 };
 

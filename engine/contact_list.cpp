@@ -72,18 +72,6 @@ void ContactList::recall(const Memory& m,
   }
 }
 
-void ContactList::find_pairs(const Grains& grains) {
-  const std::span<const CellGrid::Pair> near = grid_.near_pairs(grains, skins_);
-  pairs.i.resize(near.size());
-  pairs.j.resize(near.size());
-  for (std::size_t k = 0; k < near.size(); ++k) {
-    const auto [a, b] = near[k];
-    const bool first_is_a = grains.ids[a] < grains.ids[b];
-    pairs.i[k] = first_is_a ? a : b;
-    pairs.j[k] = first_is_a ? b : a;
-  }
-}
-
 namespace {
 
 /// Whether two rows are members of one clump.
@@ -98,17 +86,24 @@ bool within_body(const Grains& grains,
 
 }  // namespace
 
-void ContactList::drop_pairs_within_bodies(const Grains& grains,
-                                           std::span<const std::uint32_t> body_of_id) {
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    if (within_body(grains, body_of_id, pairs.i[k], pairs.j[k])) continue;
-    pairs.i[kept] = pairs.i[k];
-    pairs.j[kept] = pairs.j[k];
-    ++kept;
+void ContactList::find_pairs(const Grains& grains,
+                             std::span<const std::uint32_t> body_of_id,
+                             const Team& team) {
+  const std::vector<std::uint32_t> bounds = part_bounds(grains.size());
+  const auto found = grid_.near_pairs(grains, skins_, bounds, team);
+  pairs.i.clear();
+  pairs.j.clear();
+  parts_.clear();
+  for (std::size_t part = 0; part < found.size(); ++part) {
+    const std::size_t first = pairs.size();
+    for (const auto [a, b] : found[part]) {
+      if (!body_of_id.empty() && within_body(grains, body_of_id, a, b)) continue;
+      const bool first_is_a = grains.ids[a] < grains.ids[b];
+      pairs.i.push_back(first_is_a ? a : b);
+      pairs.j.push_back(first_is_a ? b : a);
+    }
+    parts_.push_back({bounds[part], bounds[part + 1], first, pairs.size()});
   }
-  pairs.i.resize(kept);
-  pairs.j.resize(kept);
 }
 
 void ContactList::find_walls(const Grains& grains, std::span<const Surface> surfaces) {
@@ -127,7 +122,8 @@ void ContactList::rebuild(Grains& grains,
                           std::span<const Surface> surfaces,
                           const Vec3& period,
                           double horizon,
-                          std::span<const std::uint32_t> body_of_id) {
+                          std::span<const std::uint32_t> body_of_id,
+                          const Team& team) {
   const Memory pair_memory = remember(pairs, grains, Partner::grain);
   const Memory wall_memory = remember(walls, grains, Partner::wall);
   double largest = 0.0;
@@ -140,8 +136,7 @@ void ContactList::rebuild(Grains& grains,
   anchors_.resize(n);
   repaired_ = 0;
   for (std::size_t k = 0; k < n; ++k) anchor(grains.rows[k], k, horizon);
-  find_pairs(grains);
-  if (!body_of_id.empty()) drop_pairs_within_bodies(grains, body_of_id);
+  find_pairs(grains, body_of_id, team);
   recall(pair_memory, pairs, grains, Partner::grain);
   wall_skins_.clear();
   wall_skins_.reserve(surfaces.size());

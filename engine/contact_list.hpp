@@ -16,6 +16,7 @@
 #include "engine/cell_grid.hpp"
 #include "engine/contact_block.hpp"
 #include "engine/grains.hpp"
+#include "engine/team.hpp"
 
 namespace repose::engine {
 
@@ -36,6 +37,12 @@ struct Candidates {
   }
 };
 
+/// What one of a team works on: rows, and pairs found by them.
+struct Part {
+  std::uint32_t first_row, last_row;  ///< from the first to before the last
+  std::size_t first, last;            ///< candidate pairs, likewise
+};
+
 class ContactList {
  public:
   explicit ContactList(int history_columns) : history_columns_(history_columns) {}
@@ -47,7 +54,12 @@ class ContactList {
                std::span<const Surface> surfaces,
                const Vec3& period,
                double horizon,
-               std::span<const std::uint32_t> body_of_id = {});
+               std::span<const std::uint32_t> body_of_id = {},
+               const Team& team = {});
+
+  /// The parts as last rebuilt. Pairs that came by repairs since then follow those of the last
+  /// part.
+  [[nodiscard]] std::span<const Part> parts() const { return parts_; }
 
   /// Looks again at the few grains that have moved by their skins, so that the list is valid once
   /// more. False, and nothing changed, when they are too many: then rebuild.
@@ -91,15 +103,17 @@ class ContactList {
               Candidates& candidates,
               const Grains& grains,
               Partner partner) const;
-  void find_pairs(const Grains& grains);
+  void find_pairs(const Grains& grains,
+                  std::span<const std::uint32_t> body_of_id,
+                  const Team& team);
   /// Where a grain is now; its skin starts anew.
   void anchor(const GrainRow& grain, std::size_t row, double horizon);
   void append(Candidates& candidates, const std::vector<std::uint64_t>& found);
-  void drop_pairs_within_bodies(const Grains& grains, std::span<const std::uint32_t> body_of_id);
   void find_walls(const Grains& grains, std::span<const Surface> surfaces);
 
   int history_columns_;
   CellGrid grid_;
+  std::vector<Part> parts_;
   double slowest_skin_ = 0.0;
   std::vector<double> skins_;
   std::vector<double> wall_skins_;

@@ -15,8 +15,7 @@ inline void advance_all(Motion& m) {
   const Quad step{dt, dt, dt, 0.0};
   const Quad none{0.0, 0.0, 0.0, 0.0};
   bool outlived = false;
-  const std::size_t n = m.grains.size();
-  for (std::size_t k = 0; k < n; ++k) {
+  for (std::size_t k = m.first_row; k < m.last_row; ++k) {
     GrainRow& row = m.grains.rows[k];
     GrainLoad& load = m.grains.loads[k];
     const double push = row.inverse_mass * dt, turn = row.inverse_inertia * dt;

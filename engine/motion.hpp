@@ -12,10 +12,11 @@ struct Motion {
   double dt;     ///< s
   Grains& grains;
   const ContactList::Anchor* anchors;  ///< one for each row
+  std::uint32_t first_row, last_row;   ///< to move: from the first to before the last
   bool outlived = false;               ///< whether a grain has used up its skin
 };
 
-/// Moves every grain and clears its load.
+/// Moves the grains of these rows and clears their loads.
 void advance(Motion& motion);
 
 }  // namespace repose::engine

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "engine/motion.hpp"
-#include "engine/pair_pass.hpp"
 #include "engine/wall_pass.hpp"
 
 namespace repose::engine {
@@ -43,8 +42,7 @@ World::World(ContactModel model, const WorldOptions& options)
     : model_(std::move(model)),
       options_(options),
       gravity_(options.gravity),
-      list_(model_.history_columns()),
-      block_(std::make_unique<ContactBlock>()) {}
+      list_(model_.history_columns()) {}
 
 std::uint32_t World::add_row(const GrainRow& row) {
   const auto id = static_cast<std::uint32_t>(inserted_++);
@@ -119,7 +117,9 @@ void World::rebuild() {
                 surfaces_,
                 options_.period,
                 horizon_steps * options_.time_step,
-                clumps_.bodies_of_ids());
+                clumps_.bodies_of_ids(),
+                options_.team);
+  desks_.resize(list_.parts().size());
   if (!clumps_.empty()) clumps_.locate(grains_, options_.period);
   grains_.loads.resize(grains_.size());
   travelled_.assign(surfaces_.size(), 0.0);
@@ -128,17 +128,32 @@ void World::rebuild() {
   ++rebuilds_;
 }
 
-void World::push_pairs() {
+void World::push_part(const Part& part, Desk& desk) {
   PairPass pass{.law = model_.law(MaterialId::grain),
                 .period = {options_.period.x, options_.period.y},
                 .dt = options_.time_step,
                 .rows = grains_.rows.data(),
                 .loads = grains_.loads.data(),
                 .candidates = list_.pairs,
+                .part = part,
                 .history_columns = list_.history_columns(),
-                .block = *block_};
+                .block = *desk.block,
+                .spill = desk.spill};
   engine::push_pairs(pass);
-  closed_ += pass.closed;
+  desk.closed = pass.closed;
+}
+
+void World::push_pairs() {
+  const std::span<const Part> parts = list_.parts();
+  share(options_.team, parts.size(), [&](std::size_t k) { push_part(parts[k], desks_[k]); });
+  for (Desk& desk : desks_) {
+    deliver(desk.spill, grains_.loads.data());
+    closed_ += desk.closed;
+  }
+  // What came by repairs.
+  const auto rows = static_cast<std::uint32_t>(grains_.size());
+  push_part({0, rows, parts.back().last, list_.pairs.size()}, desks_.front());
+  closed_ += desks_.front().closed;
 }
 
 void World::push_walls() {
@@ -151,7 +166,7 @@ void World::push_walls() {
                 .wall_loads = wall_loads_,
                 .candidates = list_.walls,
                 .history_columns = list_.history_columns(),
-                .block = *block_};
+                .block = *desks_.front().block};
   engine::push_walls(pass);
   closed_ += pass.closed;
 }
@@ -159,9 +174,18 @@ void World::push_walls() {
 /// Members of clumps have no motion of their own: what they get with the others is overwritten.
 void World::move() {
   if (!clumps_.empty()) clumps_.collect(grains_);
-  Motion motion{gravity_, options_.time_step, grains_, list_.anchors().data()};
-  advance(motion);
-  outlived_ = motion.outlived;
+  const std::span<const Part> parts = list_.parts();
+  share(options_.team, parts.size(), [&](std::size_t k) {
+    Motion motion{gravity_,
+                  options_.time_step,
+                  grains_,
+                  list_.anchors().data(),
+                  parts[k].first_row,
+                  parts[k].last_row};
+    advance(motion);
+    desks_[k].outlived = motion.outlived;
+  });
+  outlived_ = std::ranges::any_of(desks_, &Desk::outlived);
   if (clumps_.empty()) return;
   clumps_.advance(options_.time_step, gravity_, options_.period, grains_.rows);
   outlived_ = outlived_ || list_.outlived(grains_, clumps_.rows());

@@ -1,5 +1,5 @@
-/// World: grains, walls and gravity, advanced step by step. Single-threaded, so equal input gives
-/// equal bits.
+/// World: grains, walls and gravity, advanced step by step. Equal input gives equal bits, whoever
+/// shares the work.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 #include "engine/contact_list.hpp"
 #include "engine/contact_model.hpp"
 #include "engine/grains.hpp"
+#include "engine/pair_pass.hpp"
 #include "engine/wall_motion.hpp"
 
 namespace repose::engine {
@@ -30,6 +31,7 @@ struct WorldOptions {
   double time_step = 0.0;  ///< s
   Vec3 period;             ///< m; 0 where not periodic; z is never
   Vec3 gravity{0.0, 0.0, -9.81};
+  Team team = {};  ///< to share the work of a large run; the bits are the same without
 };
 
 class World {
@@ -96,9 +98,18 @@ class World {
   [[nodiscard]] double bytes_per_grain() const;
 
  private:
+  /// What one of the team needs for itself.
+  struct Desk {
+    std::unique_ptr<ContactBlock> block = std::make_unique<ContactBlock>();
+    Spill spill;
+    std::size_t closed = 0;
+    bool outlived = false;
+  };
+
   std::uint32_t add_row(const GrainRow& row);
   void rebuild();
   void push_pairs();
+  void push_part(const Part& part, Desk& desk);
   void push_walls();
   void move();
   void move_walls();
@@ -115,9 +126,9 @@ class World {
   std::vector<double> travelled_;  ///< by each wall since the list was made, m
   bool walls_move_ = false;
   ContactList list_;
-  std::unique_ptr<ContactBlock> block_;
-  bool stale_ = true;      ///< the list must be made anew
-  bool outlived_ = false;  ///< some grain has moved by its skin
+  std::vector<Desk> desks_;  ///< one for each part
+  bool stale_ = true;        ///< the list must be made anew
+  bool outlived_ = false;    ///< some grain has moved by its skin
   double time_ = 0.0;
   std::uint64_t steps_ = 0;
   std::uint64_t grain_steps_ = 0;

@@ -101,7 +101,8 @@ TEST_CASE("the list stays complete until a grain has moved by its skin", "[engin
     row.vy = random.uniform(-0.3, 0.3);
   }
   grains.loads.resize(grains.size());
-  Motion motion{{}, dt, grains, list.anchors().data()};
+  Motion motion{
+      {}, dt, grains, list.anchors().data(), 0, static_cast<std::uint32_t>(grains.size())};
   int valid = 0;
   while (!motion.outlived) {
     const Names names = listed(list, grains);
@@ -126,7 +127,8 @@ TEST_CASE("a list that is repaired as grains are kicked stays complete", "[engin
       GrainRow& kicked = grains.rows[static_cast<std::size_t>(random.uniform(0.0, 399.99))];
       kicked.vx = random.uniform(-2.0, 2.0);
       kicked.vz = random.uniform(-2.0, 2.0);
-      Motion motion{{}, dt, grains, list.anchors().data()};
+      Motion motion{
+          {}, dt, grains, list.anchors().data(), 0, static_cast<std::uint32_t>(grains.size())};
       advance(motion);
       if (motion.outlived) {
         const bool repaired = list.repair(grains, walls, horizon);
