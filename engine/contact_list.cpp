@@ -94,16 +94,25 @@ void ContactList::find_pairs(const Grains& grains,
   pairs.i.clear();
   pairs.j.clear();
   parts_.clear();
+  const auto append_pair = [&](std::uint32_t a, std::uint32_t b) {
+    const bool first_is_a = grains.ids[a] < grains.ids[b];
+    pairs.i.push_back(first_is_a ? a : b);
+    pairs.j.push_back(first_is_a ? b : a);
+  };
+  std::vector<CellGrid::Pair> across;
   for (std::size_t part = 0; part < found.size(); ++part) {
     const std::size_t first = pairs.size();
     for (const auto [a, b] : found[part]) {
       if (!body_of_id.empty() && within_body(grains, body_of_id, a, b)) continue;
-      const bool first_is_a = grains.ids[a] < grains.ids[b];
-      pairs.i.push_back(first_is_a ? a : b);
-      pairs.j.push_back(first_is_a ? b : a);
+      if (b < bounds[part] || b >= bounds[part + 1]) {
+        across.push_back({a, b});
+      } else {
+        append_pair(a, b);
+      }
     }
     parts_.push_back({bounds[part], bounds[part + 1], first, pairs.size()});
   }
+  for (const auto [a, b] : across) append_pair(a, b);
 }
 
 void ContactList::find_walls(const Grains& grains, std::span<const Surface> surfaces) {

@@ -37,7 +37,7 @@ struct Candidates {
   }
 };
 
-/// What one of a team works on: rows, and pairs found by them.
+/// What one of a team works on: rows, and the pairs among them.
 struct Part {
   std::uint32_t first_row, last_row;  ///< from the first to before the last
   std::size_t first, last;            ///< candidate pairs, likewise
@@ -57,8 +57,8 @@ class ContactList {
                std::span<const std::uint32_t> body_of_id = {},
                const Team& team = {});
 
-  /// The parts as last rebuilt. Pairs that came by repairs since then follow those of the last
-  /// part.
+  /// The parts as last rebuilt. After the pairs of the last part come those across two parts and
+  /// those that came by repairs.
   [[nodiscard]] std::span<const Part> parts() const { return parts_; }
 
   /// Looks again at the few grains that have moved by their skins, so that the list is valid once

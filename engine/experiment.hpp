@@ -15,6 +15,7 @@
 #include "engine/field.hpp"
 #include "engine/frame.hpp"
 #include "engine/parameter_set.hpp"
+#include "engine/team.hpp"
 
 namespace repose::engine {
 
@@ -108,6 +109,7 @@ struct Run {
   std::stop_token stop = {};
   FrameSink frames = {};        ///< receives what happened; may be empty
   double frame_interval = 0.0;  ///< s of simulated time between frames; 0: only the stages' ends
+  Team team = {};               ///< threads to share a large run
 };
 
 struct ObservableInfo {

@@ -74,18 +74,6 @@ Sides sides_of(const Period& period) {
   history_to_lanes(all.history.data(), columns, k, lane, history);
 }
 
-/// Gives a load to a grain, of this part or another.
-[[gnu::always_inline]] inline void give(PairPass& p,
-                                        std::uint32_t row,
-                                        const Quad& force,
-                                        const Quad& torque) {
-  if (row - p.part.first_row < p.part.last_row - p.part.first_row) {
-    return receive(p.loads[row], force, torque);
-  }
-  p.spill.rows.push_back(row);
-  receive(p.spill.loads.emplace_back(), force, torque);
-}
-
 /// Gives four lanes of a block to the grains, as far as they are used.
 [[gnu::always_inline]] inline void scatter(
     PairPass& p, const Waiting& waiting, int lane, int used, int columns, const double* history) {
@@ -95,8 +83,8 @@ Sides sides_of(const Period& period) {
   const auto torque_j = from_lanes(p.block.torque_j, lane);
   for (std::size_t q = 0; q < static_cast<std::size_t>(used); ++q) {
     const std::uint32_t k = waiting.candidates[static_cast<std::size_t>(lane) + q];
-    give(p, all.i[k], force[q], torque_i[q]);
-    give(p, all.j[k], -force[q], torque_j[q]);
+    receive(p.loads[all.i[k]], force[q], torque_i[q]);
+    receive(p.loads[all.j[k]], -force[q], torque_j[q]);
     all.closed[k] = 1;
     history_from_lane(history, lane + static_cast<int>(q), all.history.data(), columns, k);
   }
@@ -146,8 +134,8 @@ Sides sides_of(const Period& period) {
 [[gnu::always_inline]] inline void push_with(PairPass& p, int columns) {
   const Candidates& all = p.candidates;
   const Sides sides = sides_of(p.period);
-  const auto begin = static_cast<std::uint32_t>(p.part.first);
-  const auto end = static_cast<std::uint32_t>(p.part.last);
+  const auto begin = static_cast<std::uint32_t>(p.first);
+  const auto end = static_cast<std::uint32_t>(p.last);
   const std::uint32_t whole = end - (end - begin) % lanes_at_once;
   p.block.period = p.period;
   Waiting waiting;
@@ -183,14 +171,5 @@ inline void push_all(PairPass& p) {
 }  // namespace
 
 void push_pairs(PairPass& pass) { AnyMachine<push_all>::call(pass); }
-
-void deliver(Spill& spill, GrainLoad* loads) {
-  for (std::size_t k = 0; k < spill.rows.size(); ++k) {
-    const GrainLoad& load = spill.loads[k];
-    receive(loads[spill.rows[k]], load_quad(&load.fx), load_quad(&load.tx));
-  }
-  spill.rows.clear();
-  spill.loads.clear();
-}
 
 }  // namespace repose::engine

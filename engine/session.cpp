@@ -130,7 +130,8 @@ bool Session::set_up(const Apparatus& apparatus) {
                     " (half the Rayleigh time, and " + number(steps_per_impact) +
                     " steps to a collision at " + number(apparatus.fastest) + " m/s)");
   }
-  world_.emplace(model_, WorldOptions{.time_step = time_step, .period = apparatus.period});
+  world_.emplace(
+      model_, WorldOptions{.time_step = time_step, .period = apparatus.period, .team = run_.team});
   world_->change_surfaces() = apparatus.walls;
   return true;
 }

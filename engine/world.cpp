@@ -128,32 +128,29 @@ void World::rebuild() {
   ++rebuilds_;
 }
 
-void World::push_part(const Part& part, Desk& desk) {
+void World::push_pairs(std::size_t first, std::size_t last, Desk& desk) {
   PairPass pass{.law = model_.law(MaterialId::grain),
                 .period = {options_.period.x, options_.period.y},
                 .dt = options_.time_step,
                 .rows = grains_.rows.data(),
                 .loads = grains_.loads.data(),
                 .candidates = list_.pairs,
-                .part = part,
+                .first = first,
+                .last = last,
                 .history_columns = list_.history_columns(),
-                .block = *desk.block,
-                .spill = desk.spill};
+                .block = *desk.block};
   engine::push_pairs(pass);
-  desk.closed = pass.closed;
+  desk.closed += pass.closed;
 }
 
 void World::push_pairs() {
   const std::span<const Part> parts = list_.parts();
-  share(options_.team, parts.size(), [&](std::size_t k) { push_part(parts[k], desks_[k]); });
-  for (Desk& desk : desks_) {
-    deliver(desk.spill, grains_.loads.data());
-    closed_ += desk.closed;
-  }
-  // What came by repairs.
-  const auto rows = static_cast<std::uint32_t>(grains_.size());
-  push_part({0, rows, parts.back().last, list_.pairs.size()}, desks_.front());
-  closed_ += desks_.front().closed;
+  share(options_.team, parts.size(), [&](std::size_t k) {
+    desks_[k].closed = 0;
+    push_pairs(parts[k].first, parts[k].last, desks_[k]);
+  });
+  push_pairs(parts.back().last, list_.pairs.size(), desks_.front());
+  for (const Desk& desk : desks_) closed_ += desk.closed;
 }
 
 void World::push_walls() {

@@ -101,7 +101,6 @@ class World {
   /// What one of the team needs for itself.
   struct Desk {
     std::unique_ptr<ContactBlock> block = std::make_unique<ContactBlock>();
-    Spill spill;
     std::size_t closed = 0;
     bool outlived = false;
   };
@@ -109,7 +108,7 @@ class World {
   std::uint32_t add_row(const GrainRow& row);
   void rebuild();
   void push_pairs();
-  void push_part(const Part& part, Desk& desk);
+  void push_pairs(std::size_t first, std::size_t last, Desk& desk);
   void push_walls();
   void move();
   void move_walls();

@@ -86,6 +86,12 @@ void add_evaluate(CLI::App& app, EvaluateCommand& options, Work& work) {
       ->capture_default_str()
       ->check(CLI::Range(1, 10000));
   command
+      .add_option("--threads",
+                  options.threads,
+                  "Threads that share a run of more than 8000 grains; the answer is the same")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
+  command
       .add_option_function<std::string>(
           "--fidelity",
           [&options](const std::string& name) {
@@ -222,6 +228,9 @@ void add_bench(CLI::App& app, BenchCommand& options, Work& work) {
   command.add_option("--rounds", options.rounds, "Times each scene is measured")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
+  command.add_option("--threads", options.threads, "Threads that share a run; then times are wall")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
   add_json(command, options.form, "One JSON object on standard output");
   command.callback([&] { work = [&] { return bench_engine_command(options); }; });
 }

@@ -11,6 +11,7 @@
 #include "engine/evaluate.hpp"
 #include "engine/random.hpp"
 #include "engine/world.hpp"
+#include "server/jobs/team.hpp"
 
 namespace repose::server {
 
@@ -26,6 +27,10 @@ constexpr double particle_steps = 4e6;   ///< of one round
 /// Processor and wall time since it was made, s.
 class Watch {
  public:
+  /// Of the processor where one thread works, which others on the machine disturb less.
+  [[nodiscard]] double time_of(unsigned threads) const {
+    return threads == 1 ? processor() : wall();
+  }
   [[nodiscard]] double processor() const {
     return static_cast<double>(std::clock() - processor_) / CLOCKS_PER_SEC;
   }
@@ -50,12 +55,14 @@ struct Bed {
   double radius;   ///< m
   double density;  ///< kg/m3
   double side;     ///< of the square base, m
+  engine::Team team;
 
   [[nodiscard]] World world(int along_x, int along_y) const {
     const auto& material = model.material(engine::MaterialId::grain);
     World result(model,
                  {.time_step = time_step_share * engine::rayleigh_time(radius, material),
-                  .period = {along_x * side, along_y * side, 0.0}});
+                  .period = {along_x * side, along_y * side, 0.0},
+                  .team = team});
     result.change_surfaces() = {engine::plane(0.0)};
     return result;
   }
@@ -106,23 +113,23 @@ World tiled(const Bed& bed, const World& one, int tiles) {
   return world;
 }
 
-BenchScene time_world(World& world, int rounds) {
+BenchScene time_world(World& world, const BenchOptions& options) {
   BenchScene scene{.scene = "static", .grains = world.grain_count()};
   const Watch whole;
   const auto grains = static_cast<double>(world.grain_count());
   const auto steps = static_cast<int>(std::ceil(particle_steps / grains));
   const std::uint64_t rebuilds = world.rebuilds();
   std::vector<double> rates;
-  rates.reserve(static_cast<std::size_t>(rounds));
-  for (int round = 0; round < rounds; ++round) {
+  rates.reserve(static_cast<std::size_t>(options.rounds));
+  for (int round = 0; round < options.rounds; ++round) {
     const Watch watch;
     for (int step = 0; step < steps; ++step) world.step();
-    rates.push_back(grains * steps / watch.processor());
+    rates.push_back(grains * steps / watch.time_of(options.threads));
   }
   summarise(rates, scene);
   scene.contacts_per_grain = static_cast<double>(world.contacts()) / grains;
   scene.steps_per_rebuild =
-      static_cast<double>(steps) * rounds /
+      static_cast<double>(steps) * options.rounds /
       static_cast<double>(std::max<std::uint64_t>(1, world.rebuilds() - rebuilds));
   scene.bytes_per_grain = world.bytes_per_grain();
   scene.wall_seconds = whole.wall();
@@ -131,7 +138,9 @@ BenchScene time_world(World& world, int rounds) {
 
 }  // namespace
 
-BenchScene bench_static(const engine::ParameterSet& grain, std::uint64_t grains, int rounds) {
+BenchScene bench_static(const engine::ParameterSet& grain,
+                        std::uint64_t grains,
+                        const BenchOptions& options) {
   const engine::ContactModel model(grain);
   const auto& material = model.material(engine::MaterialId::grain);
   const std::uint64_t one = std::min(grains, tile);
@@ -139,16 +148,17 @@ BenchScene bench_static(const engine::ParameterSet& grain, std::uint64_t grains,
   const Bed bed{.model = model,
                 .radius = 0.5 * d,
                 .density = material.density,
-                .side = std::round(20.0 * std::sqrt(static_cast<double>(one) / tile)) * d};
+                .side = std::round(20.0 * std::sqrt(static_cast<double>(one) / tile)) * d,
+                .team = team_of(options.threads)};
   World world = settled(bed, one);
-  if (grains <= tile) return time_world(world, rounds);
+  if (grains <= tile) return time_world(world, options);
   World many = tiled(bed, world, static_cast<int>(grains / tile));
-  return time_world(many, rounds);
+  return time_world(many, options);
 }
 
 BenchScene bench_experiment(std::string_view experiment,
                             const engine::ParameterSet& grain,
-                            int rounds) {
+                            const BenchOptions& options) {
   engine::Trial trial;
   trial.parameters = grain;
   trial.experiment.name = experiment;
@@ -157,16 +167,17 @@ BenchScene bench_experiment(std::string_view experiment,
   BenchScene scene{.scene = std::string(experiment)};
   const Watch whole;
   std::vector<double> rates;
-  rates.reserve(static_cast<std::size_t>(rounds));
+  rates.reserve(static_cast<std::size_t>(options.rounds));
   engine::Effort effort;
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < options.rounds; ++round) {
     const Watch watch;
-    const engine::Evaluation evaluation = engine::evaluate(trial);
+    const engine::Evaluation evaluation =
+        engine::evaluate(trial, {.team = team_of(options.threads)});
     if (const auto* failure = std::get_if<engine::Failure>(&evaluation.outcome)) {
       throw std::runtime_error(scene.scene + ": " + failure->message);
     }
     effort = evaluation.effort;
-    rates.push_back(static_cast<double>(effort.grain_steps) / watch.processor());
+    rates.push_back(static_cast<double>(effort.grain_steps) / watch.time_of(options.threads));
   }
   summarise(rates, scene);
   scene.grains = effort.grains;

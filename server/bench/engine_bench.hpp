@@ -11,10 +11,15 @@
 
 namespace repose::server {
 
+struct BenchOptions {
+  int rounds = 3;
+  unsigned threads = 1;  ///< that share a run; beyond one, times are wall times
+};
+
 struct BenchScene {
   std::string scene;
   std::uint64_t grains = 0;                ///< at the end
-  double particle_steps_per_second = 0.0;  ///< of processor time; the median of the rounds
+  double particle_steps_per_second = 0.0;  ///< the median of the rounds
   double slowest = 0.0, fastest = 0.0;     ///< the rounds' extremes, 1/s
   double contacts_per_grain = 0.0;         ///< closed at the end, walls included
   double steps_per_rebuild = 0.0;          ///< of the neighbour list
@@ -24,11 +29,13 @@ struct BenchScene {
 
 /// A settled bed, about eleven grains deep, between periodic sides: `grains` is at most 5,000, or a
 /// multiple of it, for which the bed of 5,000 is laid side by side. Settling is not timed.
-BenchScene bench_static(const engine::ParameterSet& grain, std::uint64_t grains, int rounds);
+BenchScene bench_static(const engine::ParameterSet& grain,
+                        std::uint64_t grains,
+                        const BenchOptions& options);
 
 /// A whole virtual experiment at draft fidelity.
 BenchScene bench_experiment(std::string_view experiment,
                             const engine::ParameterSet& grain,
-                            int rounds);
+                            const BenchOptions& options);
 
 }  // namespace repose::server

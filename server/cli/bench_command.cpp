@@ -13,7 +13,7 @@ namespace repose::server {
 
 namespace {
 
-void print_table(const std::vector<BenchScene>& scenes) {
+void print_table(const std::vector<BenchScene>& scenes, unsigned threads) {
   TextTable table(
       {"scene", "grains", "M particle-steps/s", "contacts/grain", "steps/rebuild", "bytes/grain"});
   for (const BenchScene& scene : scenes) {
@@ -28,7 +28,9 @@ void print_table(const std::vector<BenchScene>& scenes) {
   }
   const auto set = static_cast<std::size_t>(engine::instruction_set());
   std::cout << table.str() << "\ninstruction set " << engine::instruction_set_names.at(set)
-            << ", one core, processor time; median (extremes) of the rounds\n";
+            << (threads == 1 ? ", one core, processor time"
+                             : ", " + std::to_string(threads) + " threads, wall time")
+            << "; median (extremes) of the rounds\n";
 }
 
 }  // namespace
@@ -40,15 +42,16 @@ int bench_engine_command(const BenchCommand& command) {
       grain.set(engine::make_key("material.shear_modulus", {material}), 41.7e6);  // Pa
     }
   }
+  const BenchOptions options{command.rounds, command.threads};
   std::vector<BenchScene> scenes;
   for (const std::string& scene : command.scenes) {
-    scenes.push_back(scene == "static" ? bench_static(grain, command.grains, command.rounds)
-                                       : bench_experiment(scene, grain, command.rounds));
+    scenes.push_back(scene == "static" ? bench_static(grain, command.grains, options)
+                                       : bench_experiment(scene, grain, options));
   }
   if (command.form == Form::json) {
     std::cout << print_bench(scenes) << "\n";
   } else {
-    print_table(scenes);
+    print_table(scenes, command.threads);
   }
   return exit_code::done;
 }

@@ -21,6 +21,7 @@ struct EvaluateCommand {
   std::vector<std::string> settings;    ///< NAME=VALUE
   std::uint64_t seed = 1;
   int replicates = 1;
+  unsigned threads = 1;  ///< of one run; with several replicates each has its own
   std::optional<engine::Fidelity> fidelity;
   std::filesystem::path frames;  ///< folder; empty: none written
   double frame_interval = 0.02;  ///< s of simulated time
@@ -77,6 +78,7 @@ struct BenchCommand {
   std::uint64_t grains = 5000;  ///< of the static scene
   bool stiff = false;
   int rounds = 3;
+  unsigned threads = 1;
   Form form = Form::text;
 };
 int bench_engine_command(const BenchCommand& command);

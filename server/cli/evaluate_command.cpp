@@ -22,6 +22,7 @@
 #include "server/cli/interrupt.hpp"
 #include "server/cli/reference_grain.hpp"
 #include "server/cli/text_table.hpp"
+#include "server/jobs/team.hpp"
 #include "server/json/evaluation_json.hpp"
 #include "server/json/place.hpp"
 #include "server/json/replicates_json.hpp"
@@ -147,10 +148,12 @@ std::vector<MeanObservation> means(const Replicates& replicates) {
 
 /// Runs the replicates, one seed after another from the trial's on, on as many threads as there are
 /// cores. The frames of the first go to files.
-Replicates run_replicates(
-    const Trial& trial, int count, FrameFiles* files, double frame_interval, std::stop_token stop) {
+Replicates run_replicates(const Trial& trial,
+                          const EvaluateCommand& command,
+                          FrameFiles* files,
+                          std::stop_token stop) {
   Replicates replicates;
-  const auto size = static_cast<std::size_t>(count);
+  const auto size = static_cast<std::size_t>(command.replicates);
   replicates.trial = trial;
   replicates.evaluations.resize(size);
   replicates.wall_seconds.resize(size);
@@ -164,13 +167,14 @@ Replicates run_replicates(
       replicate.seed += i;
       engine::Run run;
       run.stop = stop;
+      run.team = team_of(command.threads);
       if (i == 0 && files != nullptr) {
         run.frames = [&](const engine::Frame& frame) {
           const auto writing = std::chrono::steady_clock::now();
           files->write(frame);
           written += seconds_since(writing);
         };
-        run.frame_interval = frame_interval;
+        run.frame_interval = command.frame_interval;
       }
       const auto start = std::chrono::steady_clock::now();
       try {
@@ -186,8 +190,8 @@ Replicates run_replicates(
   const auto start = std::chrono::steady_clock::now();
   {
     std::vector<std::jthread> threads;
-    const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-    for (std::size_t i = 0; i < std::min(cores, size); ++i) threads.emplace_back(work);
+    const std::size_t at_once = std::max(1U, std::thread::hardware_concurrency() / command.threads);
+    for (std::size_t i = 0; i < std::min(at_once, size); ++i) threads.emplace_back(work);
   }
   // The files' time is no run's; with others beside it, the longest run is the better measure.
   replicates.elapsed = size == 1 ? replicates.wall_seconds.front() : seconds_since(start);
@@ -240,11 +244,8 @@ int evaluate_command(const EvaluateCommand& command) {
   std::optional<FrameFiles> files;
   if (!command.frames.empty()) files.emplace(command.frames);
   const Interrupt interrupt;
-  const Replicates replicates = run_replicates(*trial,
-                                               command.replicates,
-                                               files ? &*files : nullptr,
-                                               command.frame_interval,
-                                               interrupt.token());
+  const Replicates replicates =
+      run_replicates(*trial, command, files ? &*files : nullptr, interrupt.token());
   if (files) {
     files->write_index();
     std::cerr << "repose: " << files->frames() << " frames and " << files->pictures()
