@@ -36,9 +36,10 @@ World crowd(const Team& team) {
   Random random(7, Purpose::grain_position);
   for (int k = 0; k < across * across * across; ++k) {
     GrainRow grain = sphere(0.003248, 1228.0);
+    const int layer = k / (across * across), line = k / across % across;
     grain.x = (k % across + 0.5) * pitch;
-    grain.y = (k / across % across + 0.5) * pitch;
-    grain.z = (k / across / across + 0.5) * pitch;
+    grain.y = (line + 0.5) * pitch;
+    grain.z = (layer + 0.5) * pitch;
     for (double GrainRow::*const v : {&GrainRow::vx, &GrainRow::vy, &GrainRow::vz}) {
       grain.*v = random.uniform(-1.0, 1.0);
     }
