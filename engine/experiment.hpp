@@ -94,6 +94,7 @@ struct Effort {
   double time_step = 0.0;         ///< s
   double simulated_seconds = 0.0;
   double largest_overlap = 0.0;  ///< of two grains or grain and wall, over the radius, 1
+  double overlap_at_rest = 0.0;  ///< the same among those seen whenever the bed came to rest
   std::uint64_t contacts = 0;    ///< closed at the end
   double bytes_per_grain = 0.0;  ///< of memory, at the end
 };

@@ -229,7 +229,7 @@ bool Session::rest(double limit) {
   const double quiet =
       std::max(1e-9, 1e-4 * grain_mass() * norm(world_->gravity()) * grain().diameter);
   double since = world_->time();
-  return until(
+  const bool rested = until(
       [&] {
         const auto grains = static_cast<double>(std::max<std::size_t>(1, world_->grain_count()));
         if (world_->kinetic_energy() / grains >= quiet) since = world_->time();
@@ -239,6 +239,8 @@ bool Session::rest(double limit) {
       limit,
       FailureKind::did_not_rest,
       "the grains were still moving after " + number(limit) + " s");
+  if (rested) overlap_at_rest_ = std::max(overlap_at_rest_, world_->largest_overlap());
+  return rested;
 }
 
 void Session::stage(std::string_view name) { emit(name); }
@@ -272,6 +274,7 @@ Effort Session::effort() const {
           .time_step = world_->time_step(),
           .simulated_seconds = world_->time(),
           .largest_overlap = largest_overlap_,
+          .overlap_at_rest = overlap_at_rest_,
           .contacts = world_->contacts(),
           .bytes_per_grain = world_->bytes_per_grain()};
 }

@@ -93,6 +93,7 @@ class Session {
   std::uint64_t requested_ = 0;
   std::uint64_t left_ = 0;
   double largest_overlap_ = 0.0;
+  double overlap_at_rest_ = 0.0;
   double next_frame_ = 0.0;
   std::vector<FrameGrain> frame_grains_;
 };

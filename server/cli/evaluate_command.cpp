@@ -231,7 +231,11 @@ void print_text(const Replicates& replicates) {
   facts.row({"wall time", duration_text(replicates.elapsed)});
   facts.row({"particle steps per second", number_text(replicates.particle_steps_per_second(), 3)});
   facts.row({"largest overlap / radius", number_text(effort.largest_overlap, 2)});
+  facts.row({"overlap at rest / radius", number_text(effort.overlap_at_rest, 2)});
   std::cout << observations.str() << "\n" << facts.str();
+  for (const std::string& warning : warnings(replicates)) {
+    std::cout << "\nwarning: " << warning << "\n";
+  }
   std::cout << "\nengine " << engine::version() << "\n";
 }
 

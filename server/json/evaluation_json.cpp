@@ -33,7 +33,7 @@ struct EffortField {
   std::variant<std::uint64_t Effort::*, double Effort::*> member;
 };
 
-constexpr std::array<EffortField, 9> effort_fields{{
+constexpr std::array<EffortField, 10> effort_fields{{
     {"grains", &Effort::grains},
     {"inserted", &Effort::inserted},
     {"requested", &Effort::requested},
@@ -43,6 +43,7 @@ constexpr std::array<EffortField, 9> effort_fields{{
     {"time_step", &Effort::time_step},
     {"simulated_seconds", &Effort::simulated_seconds},
     {"largest_overlap", &Effort::largest_overlap},
+    {"overlap_at_rest", &Effort::overlap_at_rest},
 }};
 
 Json print_effort(const Effort& effort) {

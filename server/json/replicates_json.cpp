@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "server/json/text.hpp"
+#include "server/report/number_text.hpp"
 
 namespace repose::server {
 
@@ -24,7 +25,8 @@ Json effort_json(const engine::Effort& effort) {
           {"grain_steps", effort.grain_steps},
           {"time_step", effort.time_step},
           {"simulated_seconds", effort.simulated_seconds},
-          {"largest_overlap", effort.largest_overlap}};
+          {"largest_overlap", effort.largest_overlap},
+          {"overlap_at_rest", effort.overlap_at_rest}};
 }
 
 Json run_json(const engine::Evaluation& evaluation, double wall_seconds) {
@@ -66,8 +68,18 @@ engine::Effort Replicates::effort() const {
     sum.rebuilds += effort.rebuilds;
     sum.simulated_seconds += effort.simulated_seconds;
     sum.largest_overlap = std::max(sum.largest_overlap, effort.largest_overlap);
+    sum.overlap_at_rest = std::max(sum.overlap_at_rest, effort.overlap_at_rest);
   }
   return sum;
+}
+
+std::vector<std::string> warnings(const Replicates& replicates) {
+  constexpr double hard = 0.01;  // of the radius: contacts of real grains stay below it
+  const double overlap = replicates.effort().overlap_at_rest;
+  if (!(overlap > hard)) return {};
+  return {"at rest grains overlap by up to " + number_text(100.0 * overlap, 2) +
+          " % of their radius; beyond 1 % a bed is denser and its contacts are wider than those of "
+          "hard grains: a larger shear_modulus shows how much that matters"};
 }
 
 double Replicates::particle_steps_per_second() const {
@@ -93,6 +105,7 @@ std::string print_replicates(const Replicates& replicates, std::string_view engi
     }
   }
   document.update(effort_json(replicates.effort()));
+  document["warnings"] = warnings(replicates);
   document["wall_seconds"] = replicates.elapsed;
   document["particle_steps_per_second"] = number_or_null(replicates.particle_steps_per_second());
   document["seed"] = replicates.trial.seed;

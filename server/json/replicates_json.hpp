@@ -28,11 +28,14 @@ struct Replicates {
 
   /// The first that failed.
   [[nodiscard]] const engine::Evaluation* failed() const;
-  /// Sums over the replicates; largest overlap: the largest; grains: of the first.
+  /// Sums over the replicates; overlaps: the largest; grains: of the first.
   [[nodiscard]] engine::Effort effort() const;
   /// Grains moved by one time step, per second of wall time.
   [[nodiscard]] double particle_steps_per_second() const;
 };
+
+/// What a user should know before the observations are trusted, in sentences.
+std::vector<std::string> warnings(const Replicates& replicates);
 
 std::string print_replicates(const Replicates& replicates, std::string_view engine_version);
 

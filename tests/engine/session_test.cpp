@@ -1,0 +1,88 @@
+// A run that goes wrong ends with a name and a time, never with a number.
+#include "engine/session.hpp"
+
+#include <limits>
+
+#include <catch2/catch.hpp>
+
+#include "engine/random.hpp"
+#include "tests/support/reference_grain.hpp"
+
+using namespace repose::engine;
+
+namespace {
+
+Trial kettle_trial() {
+  return {repose::tests::reference_grain(), {"kettle", Fidelity::draft, {}}, 3};
+}
+
+constexpr double radius = 3.248e-3;  // m
+
+/// A session over a floor, with these grains.
+struct Scene {
+  Trial trial = kettle_trial();
+  Run run;
+  Session session{trial, run};
+
+  explicit Scene(const std::vector<Vec3>& centres, Vec3 velocity = {}) {
+    REQUIRE(session.set_up(
+        {.walls = {plane(0.0)}, .period = {}, .low = {-1, -1, -0.01}, .high = {1, 1, 1}}));
+    for (const Vec3& centre : centres) {
+      GrainRow grain = session.next_grain();
+      grain.x = centre.x;
+      grain.y = centre.y;
+      grain.z = centre.z;
+      grain.vx = velocity.x;
+      grain.vy = velocity.y;
+      grain.vz = velocity.z;
+      session.put(grain);
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("grains put into one another end the run by name", "[engine]") {
+  Scene scene({{0, 0, 0.1}, {0.2 * radius, 0, 0.1}});
+  scene.session.world().row(0).inverse_mass = 1e-9;  // neither gives way
+  scene.session.world().row(1).inverse_mass = 1e-9;
+  CHECK_FALSE(scene.session.run_for(0.1));
+  CHECK(scene.session.failure().kind == FailureKind::unstable);
+  CHECK(scene.session.failure().message.find("overlap of 1.8") != std::string::npos);
+  CHECK(scene.session.failure().simulated_seconds > 0.0);
+}
+
+TEST_CASE("a motion that is no number ends the run by name", "[engine]") {
+  Scene scene({{0, 0, 0.1}});
+  scene.session.world().row(0).vx = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(scene.session.run_for(0.1));
+  CHECK(scene.session.failure().kind == FailureKind::unstable);
+  CHECK(scene.session.failure().message.find("no longer a number") != std::string::npos);
+}
+
+TEST_CASE("grains that leave the room are counted and gone", "[engine]") {
+  Scene scene({{0.9, 0, 0.5}, {0, 0, radius}}, {5.0, 0.0, 0.0});
+  CHECK(scene.session.run_for(0.05));
+  CHECK(scene.session.left_the_room() == 1);
+  CHECK(scene.session.world().grain_count() == 1);
+}
+
+TEST_CASE("a bed that never rests is a failure with the time it was given", "[engine]") {
+  Scene scene({{0, 0, 0.5}});
+  CHECK_FALSE(scene.session.rest(0.1));
+  CHECK(scene.session.failure().kind == FailureKind::did_not_rest);
+  CHECK(scene.session.failure().simulated_seconds == Approx(0.1).margin(0.01));
+}
+
+TEST_CASE("what grains at rest overlap is told apart from what they do on impact", "[engine]") {
+  Scene scene({{0, 0, 0.05}});
+  REQUIRE(scene.session.rest(5.0));
+  const Effort effort = scene.session.effort();
+  // Its weight alone: m g = 4/3 E* R^(1/2) d^(3/2), on a wall of the same stuff.
+  const auto& elastic = scene.session.world().model().law(MaterialId::wall).elastic;
+  const double weight = scene.session.grain_mass() * 9.81;
+  const double overlap =
+      std::pow(0.75 * weight / (elastic.modulus * std::sqrt(radius)), 2.0 / 3.0) / radius;
+  CHECK(effort.overlap_at_rest == Approx(overlap).epsilon(0.02));
+  CHECK(effort.largest_overlap > 5.0 * effort.overlap_at_rest);
+}
