@@ -38,9 +38,13 @@ GrainRow point_of(const Surface& surface, const Vec3& point) {
   row.x = point.x;
   row.y = point.y;
   row.z = point.z;
-  row.vx = surface.velocity.x;
-  row.vy = surface.velocity.y;
-  row.vz = surface.velocity.z;
+  const Vec3 velocity = velocity_at(surface, point);
+  row.vx = velocity.x;
+  row.vy = velocity.y;
+  row.vz = velocity.z;
+  row.wx = surface.spin.x;
+  row.wy = surface.spin.y;
+  row.wz = surface.spin.z;
   return row;
 }
 
@@ -163,7 +167,9 @@ void EnergyLedger::book(const std::vector<Contact>& contacts,
           block->normal_force[lane] *
               Vec3{block->normal_x[lane], block->normal_y[lane], block->normal_z[lane]} +
           Vec3{block->tangent_x[lane], block->tangent_y[lane], block->tangent_z[lane]};
+      const Vec3 couple{block->couple_x[lane], block->couple_y[lane], block->couple_z[lane]};
       account_.walls += dot(force, contact.partner.velocity()) * dt;
+      account_.walls += dot(couple, contact.partner.spin()) * dt;
     }
   }
   // A contact that has opened is forgotten.

@@ -15,7 +15,8 @@ using namespace repose::tests;
 
 namespace {
 
-/// A closed can of grains that turns end over end once a second, its floor a belt.
+/// A closed can of grains that turns end over end once a second, its floor a belt, its mantle
+/// turning about the can's axis.
 World can_of_grains(const GrainLaw& law, double time_step) {
   constexpr double radius = 0.02, height = 0.04, pitch = 7.5e-3;
   World world(ContactModel(parameters(law)), {.time_step = time_step, .period = {}});
@@ -23,7 +24,9 @@ World can_of_grains(const GrainLaw& law, double time_step) {
   walls.push_back(cylinder(radius, 0.0, height));
   walls.push_back(disc(radius, 0.0, MaterialId::grain));
   walls.push_back(disc(radius, height));
+  walls[0].spin = {0.0, 0.0, 5.0};
   walls[1].velocity = {0.3, 0.0, 0.0};
+  walls[1].belt = true;
   Random random(5, Purpose::grain_position);
   for (int k = 0; k < 45; ++k) {
     const int column = k % 9, row = column / 3, layer = k / 9;
