@@ -49,6 +49,32 @@ Surface disc(double radius, double z, MaterialId material, double inner) {
   return swept(Surface::Sweep::revolved, {inner, 0.0, z}, {radius, 0.0, z}, material);
 }
 
+Surface lying_cylinder(double radius, double x, double z, MaterialId material) {
+  Surface result;
+  result.sweep = Surface::Sweep::lying;
+  result.from_s = radius;
+  result.axis_x = x;
+  result.axis_z = z;
+  result.pivot = {x, 0.0, z};
+  result.material = material;
+  return result;
+}
+
+std::vector<Surface> lying_ribs(
+    int count, double radius, double height, double x, double z, MaterialId material) {
+  std::vector<Surface> result;
+  result.reserve(static_cast<std::size_t>(count));
+  for (int k = 0; k < count; ++k) {
+    const double angle = 2.0 * unit::pi * k / count;
+    const Vec3 out{std::sin(angle), 0.0, -std::cos(angle)};
+    const Vec3 axis{x, 0.0, z};
+    result.push_back(swept(
+        Surface::Sweep::extruded, axis + (radius - height) * out, axis + radius * out, material));
+    result.back().pivot = axis;
+  }
+  return result;
+}
+
 Surface rectangle(const Vec3& centre, const Vec3& half_a, const Vec3& half_b, MaterialId material) {
   Surface result;
   result.sweep = Surface::Sweep::rectangle;
@@ -109,10 +135,20 @@ Vec3 offset_from_placed(const Surface& surface, const Vec3& centre, double withi
   return turned(pose.turn, nearest.offset);
 }
 
+/// Of a lying cylinder. On its axis every direction is as near: downwards stands for them.
+Vec3 offset_from_lying(const Surface& surface, const Vec3& centre) {
+  const double x = centre.x - surface.axis_x, z = centre.z - surface.axis_z;
+  const double s = std::sqrt(x * x + z * z);
+  if (s == 0.0) return {0.0, 0.0, surface.from_s};
+  const double beyond = (s - surface.from_s) / s;
+  return {beyond * x, 0.0, beyond * z};
+}
+
 }  // namespace
 
 Vec3 offset_from(const Surface& surface, const Vec3& centre, double within) {
-  if (surface.sweep > Surface::Sweep::revolved) return offset_from_placed(surface, centre, within);
+  if (surface.sweep == Surface::Sweep::lying) return offset_from_lying(surface, centre);
+  if (surface.sweep > Surface::Sweep::lying) return offset_from_placed(surface, centre, within);
   const bool revolved = surface.sweep == Surface::Sweep::revolved;
   const double from_x = centre.x - surface.axis_x, from_y = centre.y - surface.axis_y;
   const double s = revolved ? std::sqrt(from_x * from_x + from_y * from_y) : centre.x;
@@ -171,6 +207,19 @@ std::vector<Triangle> triangles_of(const Surface& surface) {
   return result;
 }
 
+/// A lying cylinder as pictures show it.
+void append_polygon(const Surface& s, std::vector<FrameWall>& walls) {
+  constexpr int sides = 72;
+  const auto corner = [&](int k) {
+    const double angle = 2.0 * unit::pi * k / sides;
+    return Vec3{s.axis_x + s.from_s * std::sin(angle), 0.0, s.axis_z - s.from_s * std::cos(angle)};
+  };
+  for (int k = 0; k < sides; ++k) {
+    const Vec3 from = corner(k), to = corner(k + 1);
+    walls.push_back({false, from.x, from.z, to.x, to.z, 0.0, 0.0, {}});
+  }
+}
+
 }  // namespace
 
 std::vector<FrameWall> outline(const std::vector<Surface>& surfaces) {
@@ -178,7 +227,11 @@ std::vector<FrameWall> outline(const std::vector<Surface>& surfaces) {
   result.reserve(surfaces.size());
   for (const Surface& s : surfaces) {
     FrameWall wall;
-    if (s.sweep > Surface::Sweep::revolved) {
+    if (s.sweep == Surface::Sweep::lying) {
+      append_polygon(s, result);
+      continue;
+    }
+    if (s.sweep > Surface::Sweep::lying) {
       wall.triangles = triangles_of(s);
     } else {
       const bool revolved = s.sweep == Surface::Sweep::revolved;

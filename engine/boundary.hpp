@@ -1,8 +1,9 @@
 /// Boundary: walls without thickness. Both faces and the free edges act, so a kettle has a rim and
 /// a hopper an orifice.
 ///
-/// A wall is a straight profile swept round an upright axis or along y, a flat rectangle anywhere
-/// in space, or a smooth patch of a mesh. It may move as a rigid body; see wall_motion.hpp.
+/// A wall is a straight profile swept round an upright axis or along y, a cylinder that lies along
+/// y, a flat rectangle anywhere in space, or a smooth patch of a mesh. It may move as a rigid body;
+/// see wall_motion.hpp.
 #pragma once
 
 #include <cstdint>
@@ -32,10 +33,11 @@ struct Plate {
 };
 
 /// A wall. What is swept runs in its half plane (s, z) from (from_s, from_z) to (to_s, to_z); s is
-/// the distance from the axis (revolved) or x (extruded along y). Lengths in m. Rectangles and
+/// the distance from the axis (revolved) or x (extruded along y); of a lying cylinder from_s is the
+/// radius. Lengths in m. Rectangles and
 /// meshes stand once, also where the scene repeats.
 struct Surface {
-  enum class Sweep { extruded, revolved, rectangle, mesh };
+  enum class Sweep { extruded, revolved, lying, rectangle, mesh };
   Sweep sweep = Sweep::extruded;
   double from_s = 0.0, from_z = 0.0;
   double to_s = 0.0, to_z = 0.0;
@@ -45,6 +47,7 @@ struct Surface {
   Vec3 pivot;                              ///< a point of the axis of spin, m; goes with the wall
   bool belt = false;  ///< its points move as stated while the wall stays in its place
   double axis_x = 0.0, axis_y = 0.0;  ///< of what is revolved
+  double axis_z = 0.0;                ///< with axis_x: of a lying cylinder
   Pose pose{};                        ///< of a rectangle or mesh
   Plate plate{};                      ///< of a rectangle
   std::shared_ptr<const Mesh> mesh{};
@@ -73,6 +76,16 @@ Surface rectangle(const Vec3& centre,
                   const Vec3& half_a,
                   const Vec3& half_b,
                   MaterialId material = MaterialId::wall);
+/// The mantle of a cylinder about an axis along y, endless: a drum. Its pivot is on the axis.
+Surface lying_cylinder(double radius, double x, double z, MaterialId material = MaterialId::wall);
+/// Flat ribs on the inner side of a lying cylinder, evenly spaced, the first one lowest: lifters.
+/// Their pivots are on the axis.
+std::vector<Surface> lying_ribs(int count,
+                                double radius,
+                                double height,
+                                double x,
+                                double z,
+                                MaterialId material = MaterialId::wall);
 /// Flat ribs that stand upright on the inner side of a mantle round the z axis, evenly spaced from
 /// the x axis on: lifters of a drum.
 std::vector<Surface> ribs(int count,

@@ -26,7 +26,7 @@ struct FrameWall {
   double from_s = 0.0, from_z = 0.0;  ///< m; s is the radius (revolved) or x
   double to_s = 0.0, to_z = 0.0;
   double centre_x = 0.0, centre_y = 0.0;
-  std::vector<Triangle> triangles;  ///< instead of the curve, where there are any
+  std::vector<Triangle> triangles = {};  ///< instead of the curve, where there are any
 };
 
 struct Frame {

@@ -64,6 +64,7 @@ double fastest(const Surface& s) {
       return std::hypot(s.velocity.x, s.velocity.z) +
              (s.spin.y != 0.0 ? std::abs(s.spin.y) * profile_reach(s) : 0.0);
     case Sweep::revolved:
+    case Sweep::lying:
       return norm(s.velocity);
     case Sweep::rectangle:
     case Sweep::mesh:
@@ -84,6 +85,10 @@ void advance(Surface& s, double dt) {
       s.to_z += s.velocity.z * dt;
       s.axis_x += s.velocity.x * dt;
       s.axis_y += s.velocity.y * dt;
+      break;
+    case Sweep::lying:
+      s.axis_x += s.velocity.x * dt;
+      s.axis_z += s.velocity.z * dt;
       break;
     case Sweep::rectangle:
     case Sweep::mesh:

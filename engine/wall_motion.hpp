@@ -1,9 +1,9 @@
 /// WallMotion: walls that move as they are told, each as a rigid body: v + w x (point - pivot).
 ///
 /// The wall goes where its points go, as far as its kind can: a profile along y moves in its plane
-/// and turns about y, one round an upright axis moves with that axis, rectangles and meshes do
-/// everything. Motion along the wall itself, such as a drum's about its axis or a belt's, leaves it
-/// where it is. Steps are exact turns about the pivot.
+/// and turns about y, one round an axis of its own, upright or lying, moves with that axis,
+/// rectangles and meshes do everything. Motion along the wall itself, such as a drum's about its
+/// axis or a belt's, leaves it where it is. Steps are exact turns about the pivot.
 #pragma once
 
 #include "engine/boundary.hpp"

@@ -25,6 +25,15 @@ TEST_CASE("the offset from a wall is the shortest way to it", "[engine]") {
       {"beside a disc's edge", disc(3, 0), {0, 6, 4}, {0, 3, 4}},
       {"over a disc's hole", disc(3, 0, MaterialId::wall, 1), {0.5, 0, 0}, {-0.5, 0, 0}},
       {"inside a cone", cone(1, 0, 2, 1), {0, 0, 0.0}, {-1, 0, 0}},
+      {"inside a drum", lying_cylinder(2, 1, 3), {1, 7, 4.5}, {0, 0, -0.5}},
+      {"on a drum's axis", lying_cylinder(2, 1, 3), {1, 7, 3}, {0, 0, 2}},
+      {"before the lowest rib", lying_ribs(4, 2, 1, 1, 3)[0], {2, 7, 1.5}, {1, 0, 0}},
+      {"over the next rib's edge", lying_ribs(4, 2, 1, 1, 3)[1], {1, 7, 3}, {-1, 0, 0}},
+      {"above a rectangle", rectangle({0, 0, 1}, {2, 0, 0}, {0, 1, 0}), {1, 1, 3}, {0, 0, 2}},
+      {"beyond a rectangle's corner",
+       rectangle({0, 0, 1}, {2, 0, 0}, {0, 1, 0}),
+       {5, 5, 1},
+       {3, 4, 0}},
       {"above a cone's mantle", cone(0, 0, 2, 2), {0, 0, 1}, {-s * s, 0, s * s}},
   };
   for (const Case& c : cases) {
