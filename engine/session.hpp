@@ -3,6 +3,7 @@
 /// failure() says why.
 #pragma once
 
+#include <concepts>
 #include <functional>
 #include <optional>
 #include <string>
@@ -119,6 +120,13 @@ constexpr ExperimentInfo describe(std::span<const FieldInfo> settings,
           run};
 }
 
+/// An experiment that knows of apparatus that cannot work: its refuse() says why, of settings and
+/// the diameter of the sphere that holds the largest grain (m), before anything runs; empty: fine.
+template <class E>
+concept Refuses = requires(const typename E::Settings& settings, double largest_grain_diameter) {
+  { E::refuse(settings, largest_grain_diameter) } -> std::same_as<std::string>;
+};
+
 /// Runs a protocol: checks, settings, session, answer.
 template <class E>
 Evaluation conduct(const Trial& trial, const Run& run) {
@@ -132,6 +140,12 @@ Evaluation conduct(const Trial& trial, const Run& run) {
   const std::vector<double> values = resolved_settings(info, trial.experiment);
   for (std::size_t i = 0; i < E::fields.size(); ++i) settings.*E::fields[i].member = values[i];
   Session session(trial, run);
+  if constexpr (Refuses<E>) {
+    if (std::string reason = E::refuse(settings, 2.0 * session.largest_radius()); !reason.empty()) {
+      evaluation.outcome = Failure{FailureKind::bad_input, std::move(reason), 0.0};
+      return evaluation;
+    }
+  }
   const Readings readings = E::run(settings, session);
   evaluation.effort = session.effort();
   if (!readings) {

@@ -16,6 +16,7 @@
 #include "engine/experiments/all.hpp"
 #include "engine/filling.hpp"
 #include "engine/instrument.hpp"
+#include "engine/refusal.hpp"
 #include "engine/session.hpp"
 
 namespace repose::engine::experiments {
@@ -116,6 +117,7 @@ struct Kettle {
                      "mass of the grains inside below the rim over the kettle's volume"},
   };
 
+  static std::string refuse(const Settings& s, double largest_grain_diameter);
   static Readings run(const Settings& s, Session& session);
 
  private:
@@ -204,16 +206,16 @@ bool Kettle::pour_from_hopper(const Settings& s, Session& session) {
       s, session, [] {}, limit);
 }
 
+std::string Kettle::refuse(const Settings& s, double largest_grain_diameter) {
+  return too_short(
+      {{"diameter", s.diameter, 5.0}, {"height", s.height, 3.0}, {"opening", s.opening, 3.0}},
+      largest_grain_diameter);
+}
+
 Readings Kettle::run(const Settings& s, Session& session) {
   const double rim = 0.5 * s.diameter;
   const double d = session.grain().diameter;
   const double low = s.height + s.drop;
-  if (s.diameter < 5.0 * d || s.height < 5.0 * d || s.opening < 3.0 * d) {
-    session.fail(FailureKind::bad_input,
-                 "the kettle must be five grains wide and high and its opening three: a grain is " +
-                     std::to_string(1e3 * d) + " mm");
-    return {};
-  }
   const double room = 10.0 * s.diameter;
   const double fall = 2.0 * 9.81 * (low + 4.0 * d);
   if (!session.set_up({.walls = {disc(rim, 0.0), cylinder(rim, 0.0, s.height)},

@@ -14,11 +14,15 @@
 #include "engine/experiments/all.hpp"
 #include "engine/filling.hpp"
 #include "engine/instrument.hpp"
+#include "engine/refusal.hpp"
 #include "engine/session.hpp"
 
 namespace repose::engine::experiments {
 
 namespace {
+
+/// Grains nearer to an end wall are not read, m.
+constexpr double clear_of_ends = 0.02;
 
 struct TiltingBox {
   struct Settings {
@@ -85,12 +89,22 @@ struct TiltingBox {
       ObservableInfo{"onset_angle", unit::degree, "tilt at which the top layer moves at 0.01 m/s"},
   };
 
+  static std::string refuse(const Settings& s, double largest_grain_diameter);
   static Readings run(const Settings& s, Session& session);
 
  private:
   static bool fill(const Settings& s, Session& session);
   static Readings tilt(const Settings& s, Session& session);
 };
+
+std::string TiltingBox::refuse(const Settings& s, double largest_grain_diameter) {
+  // The top layer is read between the ends.
+  const double read = s.length - 2.0 * clear_of_ends;
+  return too_short({{"length less 20 mm at either end", read, 4.0},
+                    {"width", s.width, 4.0},
+                    {"depth", s.depth, 3.0}},
+                   largest_grain_diameter);
+}
 
 bool TiltingBox::fill(const Settings& s, Session& session) {
   // A fifth more than a close random packing holds: enough to stand above the rim everywhere.
@@ -116,8 +130,7 @@ bool TiltingBox::fill(const Settings& s, Session& session) {
 }
 
 Readings TiltingBox::tilt(const Settings& s, Session& session) {
-  constexpr double clear_of_ends = 0.02;  // m
-  constexpr double onset_speed = 0.01;    // m/s
+  constexpr double onset_speed = 0.01;  // m/s
   constexpr double steepest = 85.0 * unit::pi / 180.0;
   const double d = session.grain().diameter;
   World& world = session.world();
@@ -159,14 +172,6 @@ Readings TiltingBox::tilt(const Settings& s, Session& session) {
 }
 
 Readings TiltingBox::run(const Settings& s, Session& session) {
-  const double d = session.grain().diameter;
-  if (s.width < 4.0 * d || s.depth < 3.0 * d || s.length < 0.05 + 4.0 * d) {
-    session.fail(
-        FailureKind::bad_input,
-        "the box must be four grains wide, three deep and four longer than 50 mm: a grain is " +
-            std::to_string(1e3 * d) + " mm");
-    return {};
-  }
   const double drop = 4.0 * s.depth;
   if (!session.set_up({.walls = {strip(0.0, s.length, 0.0, MaterialId::grain),
                                  upright(0.0, 0.0, s.depth),
