@@ -47,6 +47,25 @@ std::uint64_t rain(Session& session, const Rain& order) {
   return put;
 }
 
+bool fill_to(Session& session, Rain order, double volume, double level) {
+  constexpr double close_packing = 0.64;
+  constexpr double patience = 5.0;  // s
+  const double mass = 1.1 * close_packing * volume * session.grain().density;
+  order.grains = static_cast<std::uint64_t>(mass / session.grain_mass());
+  const std::uint64_t put = rain(session, order);
+  if (put < order.grains) {
+    return session.fail(FailureKind::did_not_fill,
+                        "there was room for " + std::to_string(put) + " grains of " +
+                            std::to_string(order.grains) + " asked for");
+  }
+  if (!session.rest(patience)) return false;
+  if (strike_off(session, level) == 0) {
+    return session.fail(FailureKind::did_not_fill,
+                        "the filling does not reach its level: no grain stands above it");
+  }
+  return session.rest(patience);
+}
+
 Stream::Stream(Session& session, const Order& order)
     : session_(session),
       order_(order),

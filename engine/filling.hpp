@@ -20,6 +20,11 @@ struct Rain {
 
 std::uint64_t rain(Session& session, const Rain& order);
 
+/// Fills a vessel to a level: rain of a tenth more than a close random packing of the vessel's
+/// volume (m3) up to that level, rest, strike-off at the level, rest. False where the session
+/// failed.
+bool fill_to(Session& session, Rain order, double volume, double level);
+
 /// Stream: grains put at random free places in a round opening, falling, at a steady rate. Call
 /// feed() at short intervals.
 class Stream {

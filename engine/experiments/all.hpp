@@ -9,13 +9,19 @@
 namespace repose::engine {
 
 namespace experiments {
+extern const ExperimentInfo draw_down;
 extern const ExperimentInfo drop;
+extern const ExperimentInfo heap;
 extern const ExperimentInfo kettle;
 extern const ExperimentInfo tilting_box;
 }  // namespace experiments
 
 inline std::span<const ExperimentInfo> all_experiments() {
-  static const std::array list{experiments::drop, experiments::kettle, experiments::tilting_box};
+  static const std::array list{experiments::drop,
+                               experiments::kettle,
+                               experiments::tilting_box,
+                               experiments::heap,
+                               experiments::draw_down};
   return list;
 }
 

@@ -101,7 +101,7 @@ std::string TiltingBox::refuse(const Settings& s, double largest_grain_diameter)
   // The top layer is read between the ends.
   const double read = s.length - 2.0 * clear_of_ends;
   return too_short({{"length less 20 mm at either end", read, 4.0},
-                    {"width", s.width, 4.0},
+                    {"width", s.width, 3.0},
                     {"depth", s.depth, 3.0}},
                    largest_grain_diameter);
 }

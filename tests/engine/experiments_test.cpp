@@ -6,24 +6,19 @@
 
 #include "engine/catalogue.hpp"
 #include "engine/evaluate.hpp"
-#include "tests/support/reference_grain.hpp"
+#include "tests/support/trials.hpp"
 
 using namespace repose::engine;
 
 namespace {
 
 Trial trial(std::string_view experiment, Fidelity fidelity = Fidelity::draft) {
-  return {repose::tests::reference_grain(), {std::string(experiment), fidelity, {}}, 1};
+  return repose::tests::trial_of(experiment, fidelity);
 }
 
-/// The smallest apparatus that each experiment accepts, for tests of the machinery.
 Trial small_trial(std::string_view experiment) {
   Trial result = trial(experiment);
-  auto& settings = result.experiment.settings;
-  if (experiment == "kettle")
-    settings = {{"diameter", 0.034}, {"height", 0.034}, {"opening", 0.02}};
-  if (experiment == "tilting_box")
-    settings = {{"length", 0.08}, {"width", 0.0275}, {"depth", 0.02}};
+  result.experiment.settings = repose::tests::small_settings(experiment);
   return result;
 }
 
@@ -128,7 +123,7 @@ TEST_CASE("a question that cannot be run is refused with the reason", "[engine]"
 }
 
 TEST_CASE("a time step that is not stable is refused", "[engine]") {
-  for (const std::string_view name : {"kettle", "tilting_box"}) {
+  for (const std::string_view name : {"kettle", "tilting_box", "heap", "draw_down"}) {
     CAPTURE(name);
     Trial t = trial(name);
     t.experiment.settings["time_step"] = 0.8;
