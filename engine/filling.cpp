@@ -29,6 +29,7 @@ std::uint64_t rain(Session& session, const Rain& order) {
   Random random(session.seed(), Purpose::grain_position);
   std::uint64_t put = 0;
   for (int layer = 0; layer < most_layers && put < order.grains; ++layer) {
+    if (order.bottom + (layer + 1) * step.z > order.top) break;
     for (int i = 0; i < nx; ++i) {
       for (int j = 0; j < ny && put < order.grains; ++j) {
         GrainRow grain = session.next_grain();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "engine/session.hpp"
 
@@ -14,8 +15,9 @@ struct Rain {
   double low_x = 0.0, high_x = 0.0;  ///< m
   double low_y = 0.0, high_y = 0.0;
   double bottom = 0.0;
-  std::uint64_t grains = 0;                                ///< asked for
-  std::function<bool(const Vec3& centre, double r)> fits;  ///< empty: everywhere
+  std::uint64_t grains = 0;                                     ///< asked for
+  std::function<bool(const Vec3& centre, double r)> fits = {};  ///< empty: everywhere
+  double top = std::numeric_limits<double>::infinity();         ///< of the highest grain, m
 };
 
 std::uint64_t rain(Session& session, const Rain& order);

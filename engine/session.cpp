@@ -232,7 +232,7 @@ bool Session::rest(double limit) {
   const bool rested = until(
       [&] {
         const auto grains = static_cast<double>(std::max<std::size_t>(1, world_->grain_count()));
-        if (world_->kinetic_energy() / grains >= quiet) since = world_->time();
+        if (world_->visible_energy() / grains >= quiet) since = world_->time();
         return world_->time() - since >= hold;
       },
       watch,

@@ -62,13 +62,17 @@ std::vector<double> bare_points(const Places& places) {
 
 }  // namespace
 
-SurfaceProfile radial_profile(const World& world, const Places& places) {
+SurfaceProfile ring_profile(const World& world, const Places& places) {
   std::vector<double> tops = bare_points(places);
+  const double width = (places.to - places.from) / places.count;
   for (const GrainRow& g : world.grains().rows) {
-    raise(tops, g, std::hypot(g.x, g.y), places, [&g](double radius, double share) {
-      const double angle = 2.0 * unit::pi * share;
-      return Vec3{radius * std::cos(angle) - g.x, radius * std::sin(angle) - g.y, 0.0};
-    });
+    const double ring = std::floor((std::hypot(g.x, g.y) - places.from) / width);
+    if (ring < 0.0 || ring >= places.count) continue;
+    const double share = std::atan2(g.y, g.x) / (2.0 * unit::pi) + 0.5;
+    const int sector = std::min(static_cast<int>(share * places.points), places.points - 1);
+    double& top = tops[static_cast<std::size_t>(ring) * static_cast<std::size_t>(places.points) +
+                       static_cast<std::size_t>(sector)];
+    top = std::max(top, g.z + g.radius);
   }
   return mean_of(tops, places);
 }

@@ -227,12 +227,21 @@ void World::for_each_grain(const std::function<void(const GrainRow&, std::uint32
 }
 
 double World::kinetic_energy() const {
+  double energy = visible_energy();
+  for (std::size_t k = 0; k < grains_.size(); ++k) {
+    const GrainRow& a = grains_.rows[k];
+    if (clumps_.body_of(grains_.ids[k]) != no_body) continue;
+    energy += 0.5 * dot(a.spin(), a.spin()) / a.inverse_inertia;
+  }
+  return energy;
+}
+
+double World::visible_energy() const {
   double energy = 0.0;
   for (std::size_t k = 0; k < grains_.size(); ++k) {
     const GrainRow& a = grains_.rows[k];
     if (clumps_.body_of(grains_.ids[k]) != no_body) continue;
     energy += 0.5 * dot(a.velocity(), a.velocity()) / a.inverse_mass;
-    energy += 0.5 * dot(a.spin(), a.spin()) / a.inverse_inertia;
   }
   for (const ClumpBody& body : clumps_.bodies()) energy += engine::kinetic_energy(body);
   return energy;

@@ -92,6 +92,8 @@ class World {
 
   /// Kinetic energy, rotation included, J. Not a number once the run has gone wrong.
   [[nodiscard]] double kinetic_energy() const;
+  /// The same without the spin of spheres, which nothing may stop where they stand on one point, J.
+  [[nodiscard]] double visible_energy() const;
   /// Largest overlap over radius among the contacts of the last step.
   [[nodiscard]] double largest_overlap() const;
   /// Bytes held for each grain, contacts and their history included.

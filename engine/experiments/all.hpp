@@ -9,8 +9,10 @@
 namespace repose::engine {
 
 namespace experiments {
+extern const ExperimentInfo compression;
 extern const ExperimentInfo draw_down;
 extern const ExperimentInfo drop;
+extern const ExperimentInfo drum;
 extern const ExperimentInfo heap;
 extern const ExperimentInfo kettle;
 extern const ExperimentInfo tilting_box;
@@ -21,7 +23,9 @@ inline std::span<const ExperimentInfo> all_experiments() {
                                experiments::kettle,
                                experiments::tilting_box,
                                experiments::heap,
-                               experiments::draw_down};
+                               experiments::draw_down,
+                               experiments::drum,
+                               experiments::compression};
   return list;
 }
 

@@ -3,9 +3,9 @@
 /// Protocol: a cylinder stands in the middle of a disc that is covered with grains' stuff and has a
 /// low rim of the same. Grains rain into it, come to rest and are struck off at `fill`. The
 /// cylinder is lifted at `lift_speed` until its lower edge is above all grains; what falls off the
-/// disc is removed. When the heap is at rest the height of its surface is read between 20 and 80 %
-/// of the disc's radius, each the mean round a circle. heap_angle: slope of the straight line
-/// through them.
+/// disc is removed. When the heap is at rest the height of its surface is read in rings, a grain
+/// wide, between 20 and 80 % of the disc's radius: the mean, over twelve sectors, of the highest
+/// top of a grain. heap_angle: slope of the straight line through them.
 ///
 /// Source: the fixed-base poured heap of Zhou, Xu, Yu & Zulli 2002, Powder Technology 125, 45-54,
 /// with the lifted cylinder of ISO 902 practice in place of their outlet.
@@ -157,13 +157,14 @@ Readings Heap::read(const Settings& s, Session& session) {
   const double radius = 0.5 * s.disc_diameter;
   const double from = 0.2 * radius;
   const double to = 0.8 * radius;
+  const int rings = std::max(3, static_cast<int>(std::lround((to - from) / d)));
   const SurfaceProfile surface =
-      radial_profile(session.world(), {.from = from, .to = to, .count = 30, .points = 180});
+      ring_profile(session.world(), {.from = from, .to = to, .count = rings, .points = 12});
   const SurfaceProfile covered = covered_places(surface);
   if (covered.size() < surface.size()) {
     session.fail(FailureKind::not_observed,
                  "no heap formed: of " + std::to_string(surface.size()) +
-                     " circles on the disc only " + std::to_string(covered.size()) +
+                     " rings on the disc only " + std::to_string(covered.size()) +
                      " are covered with grains");
     return {};
   }

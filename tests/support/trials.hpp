@@ -25,6 +25,9 @@ inline std::map<std::string, double> small_settings(std::string_view experiment)
     return {{"disc_diameter", 0.066}, {"cylinder_diameter", 0.038}, {"fill", 0.07}};
   if (experiment == "draw_down")
     return {{"length", 0.13}, {"width", 0.0275}, {"depth", 0.04}, {"slot", 0.03}};
+  if (experiment == "drum") return {{"diameter", 0.07}, {"length", 0.02}, {"seconds", 0.3}};
+  if (experiment == "compression")
+    return {{"side", 0.033}, {"depth", 0.033}, {"stress", 5e3}, {"speed", 0.02}};
   return {};
 }
 

@@ -22,7 +22,7 @@ Trial trial(std::string_view experiment, double members) {
     settings = {{"diameter", 0.04}, {"height", 0.034}, {"opening", 0.025}};
   }
   if (experiment == "tilting_box") {
-    settings = {{"length", 0.08}, {"width", 0.0275}, {"depth", 0.02}};
+    settings = {{"length", 0.08}, {"width", 0.0275}, {"depth", 0.024}};
   }
   return result;
 }
