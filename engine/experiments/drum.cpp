@@ -230,7 +230,7 @@ Readings Drum::run(const Settings& s, Session& session) {
   const double turn = 2.0 * unit::pi / s.speed;
   if (!session.run_for(std::max(1.0, 0.35 * turn))) return {};
   session.stage("flowing");
-  const Readings readings = read(s, session);
+  Readings readings = read(s, session);
   session.stage("at the end");
   if (session.left_the_room() > 0) {
     session.fail(FailureKind::unstable, "grains went through the drum's mantle");
