@@ -3,7 +3,7 @@
 /// An effect is a struct in one file of effects/, admitted by one line of effects/all.hpp. It holds
 /// a `text`, a table of `fields`, its `stage` and `scope`, and at least one hook:
 ///
-///   populate   once, when grains are made: may change their sizes
+///   populate   once, when grains are made: their sizes; of these effects one may be on
 ///   shape      once, when grains are made: the spheres of which a grain consists
 ///   prepare    once per material pair: Parameters, pair elasticity -> Coefficients
 ///   contact    each step, per block of contacts: columns in, columns out
@@ -80,6 +80,8 @@ concept LoadHook = requires(ContactBlock& block, const typename E::Coefficients&
 template <class E>
 concept PopulateHook = requires(const typename E::Parameters& parameters, Random& random) {
   { E::populate(parameters, random) } -> std::same_as<double>;  // grain volume over mean volume
+  { E::smallest(parameters) } -> std::same_as<double>;          // of these
+  { E::largest(parameters) } -> std::same_as<double>;
 };
 
 template <class E>

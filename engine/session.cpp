@@ -60,7 +60,7 @@ std::string check_parameters(const ParameterSet& parameters) {
                            {MaterialId::wall}};
     if (!parameters.get(key)) return to_string(key) + " must be given";
   }
-  return {};
+  return check_sizes(parameters);
 }
 
 /// The clump that grains are; nothing where they are spheres.
@@ -91,10 +91,10 @@ Session::Session(const Trial& trial, const Run& run)
     : trial_(trial),
       run_(run),
       model_(trial.parameters),
-      spread_(parameters_of<effects::SizeSpread>(trial.parameters, {MaterialId::grain})),
+      sizes_(size_population(trial.parameters)),
       shape_(shape_of_grains(trial.parameters)) {
-  const double least = std::cbrt(effects::SizeSpread::smallest(spread_));
-  const double most = std::cbrt(effects::SizeSpread::largest(spread_));
+  const double least = std::cbrt(sizes_.smallest);
+  const double most = std::cbrt(sizes_.largest);
   const double mean = 0.5 * grain().diameter;
   smallest_radius_ = mean * least;
   largest_radius_ = mean * most;
@@ -138,7 +138,7 @@ bool Session::set_up(const Apparatus& apparatus) {
 
 GrainRow Session::next_grain() const {
   Random random(trial_.seed, Purpose::grain_size, world_->inserted_grains());
-  const double volume = effects::SizeSpread::populate(spread_, random);
+  const double volume = sizes_.volume ? sizes_.volume(random) : 1.0;
   GrainRow row = sphere(0.5 * grain().diameter * std::cbrt(volume), grain().density);
   if (shape_) row.radius *= 2.0 * shape_->bounding_radius / equivalent_diameter(*shape_);
   return row;

@@ -12,6 +12,7 @@
 #include "engine/catalogue.hpp"
 #include "engine/experiment.hpp"
 #include "engine/result.hpp"
+#include "engine/size_population.hpp"
 #include "engine/world.hpp"
 
 namespace repose::engine {
@@ -85,7 +86,7 @@ class Session {
   const Trial& trial_;
   const Run& run_;
   ContactModel model_;
-  effects::SizeSpread::Parameters spread_;
+  SizePopulation sizes_;
   std::optional<ClumpShape> shape_;  ///< of every grain; none: spheres
   double smallest_radius_;
   double largest_radius_;

@@ -252,6 +252,17 @@ void add_catalogue(CLI::App& app, Form& form, SchemaCommand& options, Work& work
   schema.callback([&] { work = [&] { return schema_command(options); }; });
 }
 
+void add_materials(CLI::App& app, MaterialsCommand& options, Work& work) {
+  CLI::App& command = *app.add_subcommand("materials", "Print published properties of grains");
+  command.add_option("name", options.name, "Which grain; without it they are listed");
+  auto* study = command.add_flag("--study", options.study, "Print a study to start from");
+  command
+      .add_flag_callback(
+          "--json", [&options] { options.form = Form::json; }, "As JSON")
+      ->excludes(study);
+  command.callback([&] { work = [&] { return materials_command(options); }; });
+}
+
 /// Every command's arguments, alive while the command runs.
 struct Commands {
   EvaluateCommand evaluate;
@@ -261,6 +272,7 @@ struct Commands {
   ShowCommand show;
   ServeCommand serve;
   BenchCommand bench;
+  MaterialsCommand materials;
   Form catalogue_form = Form::json;
   SchemaCommand schema;
 };
@@ -300,6 +312,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_list(app, commands.list, work);
   add_show(app, commands.show, work);
   add_bench(app, commands.bench, work);
+  add_materials(app, commands.materials, work);
   add_catalogue(app, commands.catalogue_form, commands.schema, work);
   CLI::App& answer = *app.add_subcommand("answer", "Answer one trial from standard input");
   answer.group("");  // hidden: for the worker pool

@@ -15,6 +15,9 @@ Reply list_best_fits(Service& service, const Request& request);
 Reply get_catalogue(Service& service, const Request& request);
 Reply get_openapi(Service& service, const Request& request);
 
+Reply list_materials(Service& service, const Request& request);
+Reply get_material(Service& service, const Request& request);
+
 Reply get_health(Service& service, const Request& request);
 Reply get_life(Service& service, const Request& request);
 

@@ -20,7 +20,8 @@ struct Request {
   std::multimap<std::string, std::string> query;
   std::string content_type;
   std::string body;
-  std::int64_t id = 0;  ///< of the path, where the route's pattern has {id}
+  std::int64_t id = 0;    ///< of the path, where the route's pattern has {id}
+  std::string name = {};  ///< of the path, where the route's pattern has {name}
 };
 
 struct Reply {
@@ -42,7 +43,7 @@ using Handler = Reply (*)(Service& service, const Request& request);
 
 struct Route {
   std::string_view method;
-  std::string_view pattern;  ///< segments; {id} stands for a whole number from 1
+  std::string_view pattern;  ///< segments; {id} is a whole number from 1, {name} any but nothing
   std::string_view name;     ///< for programs that are generated from the description
   std::string_view summary;
   std::string_view request;   ///< name of the body's schema; empty: no body

@@ -25,7 +25,7 @@ constexpr std::array<QueryField, 1> best_fit_fields{
     {{"name", "only of the study of that name", false}}};
 
 // clang-format off
-constexpr std::array<Route, 10> table{{
+constexpr std::array<Route, 12> table{{
     {"POST", "/v1/calibrations", "submitCalibration", "Queue a calibration.",
      "calibration", 202, "calibration_document", {}, handlers::submit_calibration},
     {"GET", "/v1/calibrations", "listCalibrations", "List calibrations, newest first.",
@@ -40,6 +40,10 @@ constexpr std::array<Route, 10> table{{
      "", 200, "best_fit_list", best_fit_fields, handlers::list_best_fits},
     {"GET", "/v1/catalogue", "getCatalogue", "Get effects, experiments, material properties and units.",
      "", 200, "catalogue", {}, handlers::get_catalogue},
+    {"GET", "/v1/materials", "listMaterials", "List the grains of which published properties are known.",
+     "", 200, "material_list", {}, handlers::list_materials},
+    {"GET", "/v1/materials/{name}", "getMaterial", "Get the published properties of a grain, with their sources.",
+     "", 200, "published_material", {}, handlers::get_material},
     {"GET", "/v1/openapi.json", "getDescription", "Get this description.",
      "", 200, "", {}, handlers::get_openapi},
     {"GET", "/healthz", "getHealth", "See whether the service can work.",
@@ -65,22 +69,31 @@ std::optional<std::int64_t> id_of(std::string_view segment) {
   return value;
 }
 
-/// The id of a path that has the pattern's form, 0 where the pattern has none; else nothing.
-std::optional<std::int64_t> match(std::string_view pattern, std::string_view path) {
-  if (std::ranges::count(pattern, '/') != std::ranges::count(path, '/')) return std::nullopt;
+/// What a path says in the places that its pattern leaves open.
+struct PathParts {
   std::int64_t id = 0;
+  std::string name;
+};
+
+/// The parts of a path that has the pattern's form; else nothing.
+std::optional<PathParts> match(std::string_view pattern, std::string_view path) {
+  if (std::ranges::count(pattern, '/') != std::ranges::count(path, '/')) return std::nullopt;
+  PathParts parts;
   while (!pattern.empty() || !path.empty()) {
     const std::string_view expected = next_segment(pattern);
     const std::string_view found = next_segment(path);
     if (expected == "{id}") {
       const auto number = id_of(found);
       if (!number) return std::nullopt;
-      id = *number;
+      parts.id = *number;
+    } else if (expected == "{name}") {
+      if (found.empty()) return std::nullopt;
+      parts.name = found;
     } else if (expected != found) {
       return std::nullopt;
     }
   }
-  return id;
+  return parts;
 }
 
 bool is_json(std::string_view content_type) {
@@ -110,10 +123,11 @@ Reply respond(Service& service, Request request) {
   const std::string_view method = asked == "HEAD" ? "GET" : asked;
   std::string allowed;
   for (const Route& route : table) {
-    const auto id = match(route.pattern, request.path);
-    if (!id) continue;
+    const auto parts = match(route.pattern, request.path);
+    if (!parts) continue;
     if (route.method == method) {
-      request.id = *id;
+      request.id = parts->id;
+      request.name = parts->name;
       return run(route, service, request);
     }
     allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);

@@ -83,6 +83,13 @@ struct BenchCommand {
 };
 int bench_engine_command(const BenchCommand& command);
 
+struct MaterialsCommand {
+  std::string name;    ///< empty: all are listed
+  bool study = false;  ///< print a study to start from
+  Form form = Form::text;
+};
+int materials_command(const MaterialsCommand& command);
+
 int catalogue_command(Form form);
 
 struct SchemaCommand {

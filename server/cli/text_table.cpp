@@ -21,7 +21,8 @@ std::string TextTable::str() const {
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string pad(widths[i] - letters(row[i]), ' ');
       if (i > 0) line += "  ";
-      line += i == 0 ? row[i] + pad : pad + row[i];
+      const bool left = i < sides_.size() && sides_[i] == 'l';
+      line += left ? row[i] + pad : pad + row[i];
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";

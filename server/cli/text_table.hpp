@@ -9,8 +9,9 @@ namespace repose::server {
 
 class TextTable {
  public:
-  /// The first column is set to the left, the others to the right.
-  explicit TextTable(std::vector<std::string> head) : rows_{std::move(head)} {}
+  /// `sides` has a letter for each column: l, set to the left, or r, which it is without a letter.
+  explicit TextTable(std::vector<std::string> head, std::string_view sides = "l")
+      : rows_{std::move(head)}, sides_(sides) {}
 
   void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
   /// Lines end with a newline; the first holds the heads.
@@ -18,6 +19,7 @@ class TextTable {
 
  private:
   std::vector<std::vector<std::string>> rows_;
+  std::string sides_;
 };
 
 /// Letters that a UTF-8 text takes on a terminal.

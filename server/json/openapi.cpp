@@ -82,6 +82,12 @@ Json print_parameters(const Route& route) {
   if (route.pattern.find("{id}") != std::string_view::npos) {
     result.push_back({{"name", "id"}, {"in", "path"}, {"required", true}, {"schema", whole(1)}});
   }
+  if (route.pattern.find("{name}") != std::string_view::npos) {
+    result.push_back({{"name", "name"},
+                      {"in", "path"},
+                      {"required", true},
+                      {"schema", {{"type", "string"}, {"minLength", 1}}}});
+  }
   for (const QueryField& field : route.query) {
     result.push_back({{"name", field.name},
                       {"in", "query"},

@@ -10,6 +10,8 @@
 #include "server/api/problem.hpp"
 #include "server/json/calibration_json.hpp"
 #include "server/json/fit_json.hpp"
+#include "server/json/material_library.hpp"
+#include "server/json/starting_study.hpp"
 #include "tests/schemas/schema_check.hpp"
 
 namespace {
@@ -125,4 +127,15 @@ TEST_CASE("the answer of a cancelled calibration conforms to the schema of fits"
 TEST_CASE("a problem conforms to its schema", "[schemas]") {
   const auto reply = repose::server::problem_reply(422, "no", {{"/a", "wrong", "1", "2"}});
   CHECK_THAT(violations(schema("problem"), Json::parse(reply.body)), conforms());
+}
+
+TEST_CASE("what is published of a grain conforms to its schema, and the study made of it too",
+          "[schemas]") {
+  for (const auto& material : repose::server::material_library().materials) {
+    INFO(material.name);
+    const std::string facts = repose::server::print_material(material.name);
+    CHECK_THAT(violations(schema("published_material"), Json::parse(facts)), conforms());
+    const std::string study = repose::server::starting_study(material).text;
+    CHECK_THAT(violations(schema("calibration"), Json::parse(study)), conforms());
+  }
 }

@@ -80,6 +80,32 @@ TEST_CASE("every route is answered by its own method and by no other", "[server]
   std::filesystem::remove_all(name);
 }
 
+TEST_CASE("a material is answered by its name, and one that is not there with those that are",
+          "[server]") {
+  char name[] = "/tmp/repose-routes-XXXXXX";
+  REQUIRE(mkdtemp(name) != nullptr);
+  {
+    repose::server::ServiceOptions options;
+    options.database = std::filesystem::path(name) / "repose.db";
+    repose::server::Service service(options);
+    const auto get = [&](const char* path) {
+      Request request;
+      request.method = "GET";
+      request.path = path;
+      return respond(service, request);
+    };
+    CHECK(get("/v1/materials").body.find("\"canola\"") != std::string::npos);
+    CHECK(get("/v1/materials/wheat").status == 200);
+    CHECK(get("/v1/materials/wheat").body.find("\"name\":\"wheat\"") != std::string::npos);
+    const auto missing = get("/v1/materials/whea");
+    CHECK(missing.status == 404);
+    CHECK(missing.body.find("wheat") != std::string::npos);
+    CHECK(get("/v1/materials/").status == 404);
+    CHECK(get("/v1/materials/wheat/x").status == 404);
+  }
+  std::filesystem::remove_all(name);
+}
+
 TEST_CASE("a head without faults is not refused", "[server]") {
   CHECK(status(head()) == 0);
   CHECK(status(with(head("POST"), "Content-Length", "17")) == 0);
