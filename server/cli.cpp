@@ -228,6 +228,8 @@ void add_bench(CLI::App& app, BenchCommand& options, Work& work) {
   command.add_option("--rounds", options.rounds, "Times each scene is measured")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
+  command.add_option("--bed", options.bed, "Write the settled bed of the static scene there")
+      ->type_name("FILE");
   command.add_option("--threads", options.threads, "Threads that share a run; then times are wall")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <fstream>
+#include <iomanip>
 #include <stdexcept>
 #include <variant>
 
@@ -113,8 +115,16 @@ World tiled(const Bed& bed, const World& one, int tiles) {
   return world;
 }
 
+void write_bed(const World& world, const std::filesystem::path& path) {
+  std::ofstream file(path);
+  file << std::setprecision(17) << world.period().x << ' ' << world.period().y << " 0\n";
+  for (const GrainRow& g : world.grains().rows) file << g.x << ' ' << g.y << ' ' << g.z << '\n';
+  if (!file.flush()) throw std::runtime_error("the bed cannot be written to " + path.string());
+}
+
 BenchScene time_world(World& world, const BenchOptions& options) {
   BenchScene scene{.scene = "static", .grains = world.grain_count()};
+  if (!options.bed.empty()) write_bed(world, options.bed);
   const Watch whole;
   const auto grains = static_cast<double>(world.grain_count());
   const auto steps = static_cast<int>(std::ceil(particle_steps / grains));

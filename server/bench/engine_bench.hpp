@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +14,8 @@ namespace repose::server {
 
 struct BenchOptions {
   int rounds = 3;
-  unsigned threads = 1;  ///< that share a run; beyond one, times are wall times
+  unsigned threads = 1;       ///< that share a run; beyond one, times are wall times
+  std::filesystem::path bed;  ///< file; empty: the static scene's grains are not written
 };
 
 struct BenchScene {
@@ -28,7 +30,8 @@ struct BenchScene {
 };
 
 /// A settled bed, about eleven grains deep, between periodic sides: `grains` is at most 5,000, or a
-/// multiple of it, for which the bed of 5,000 is laid side by side. Settling is not timed.
+/// multiple of it, for which the bed of 5,000 is laid side by side. Settling is not timed. The
+/// bed's file has its periods along x and y and 0 in the first line, then each grain's centre, m.
 BenchScene bench_static(const engine::ParameterSet& grain,
                         std::uint64_t grains,
                         const BenchOptions& options);

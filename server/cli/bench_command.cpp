@@ -42,7 +42,7 @@ int bench_engine_command(const BenchCommand& command) {
       grain.set(engine::make_key("material.shear_modulus", {material}), 41.7e6);  // Pa
     }
   }
-  const BenchOptions options{command.rounds, command.threads};
+  const BenchOptions options{command.rounds, command.threads, command.bed};
   std::vector<BenchScene> scenes;
   for (const std::string& scene : command.scenes) {
     scenes.push_back(scene == "static" ? bench_static(grain, command.grains, options)

@@ -79,6 +79,7 @@ struct BenchCommand {
   bool stiff = false;
   int rounds = 3;
   unsigned threads = 1;
+  std::filesystem::path bed;  ///< file for the static scene's grains; may be empty
   Form form = Form::text;
 };
 int bench_engine_command(const BenchCommand& command);
