@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "engine/experiments/all.hpp"
 #include "engine/filling.hpp"
@@ -112,6 +113,8 @@ struct Curve {
   std::vector<double> stress;  ///< at the base less the bed's weight, Pa
 };
 
+constexpr double way_between_samples = 5e-6;  // m, of the platen
+
 /// Presses or lets go until the condition holds; false where the session failed.
 class Press {
  public:
@@ -128,14 +131,15 @@ class Press {
       curve.height.push_back(session_.world().surfaces()[platen].from_z);
       const double raw = (-session_.world().wall_loads()[base].force.z - weight_) / area_;
       raw_.push_back(raw);
-      constexpr std::size_t smooth = 8;  // samples: the platen moves 0.04 mm while they are taken
+      constexpr std::size_t smooth = 8;  // samples
       const std::size_t n = std::min(smooth, raw_.size());
       double sum = 0.0;
       for (std::size_t k = raw_.size() - n; k < raw_.size(); ++k) sum += raw_[k];
       curve.stress.push_back(sum / static_cast<double>(n));
       return done(curve.stress.back(), curve.height.back());
     };
-    return session_.until(look, 5e-4, limit, FailureKind::not_observed, complaint);
+    const double watch = way_between_samples / std::abs(speed);
+    return session_.until(look, watch, limit, FailureKind::not_observed, complaint);
   }
 
   Curve curve;
@@ -146,15 +150,15 @@ class Press {
   std::vector<double> raw_;
 };
 
-/// Height of the platen where the stress first passes a level, rising or falling.
-double height_at(const Curve& curve, double level) {
-  const bool rising = curve.stress.front() < level;
+/// Height of the platen where the stress first passes a level, rising (from below it) or falling;
+/// nothing where it does not.
+std::optional<double> height_at(const Curve& curve, double level, bool rising) {
   for (std::size_t k = 1; k < curve.stress.size(); ++k) {
-    if ((curve.stress[k] >= level) != rising) continue;
-    return crossing(
-        curve.height[k - 1], curve.height[k], curve.stress[k - 1], curve.stress[k], level);
+    const double before = curve.stress[k - 1], after = curve.stress[k];
+    if (rising ? before >= level || after < level : before <= level || after > level) continue;
+    return crossing(curve.height[k - 1], curve.height[k], before, after, level);
   }
-  return curve.height.back();
+  return std::nullopt;
 }
 
 std::string Compression::refuse(const Settings& s, double largest_grain_diameter) {
@@ -203,12 +207,19 @@ Readings Compression::run(const Settings& s, Session& session) {
   }
   session.stage("released");
 
-  const double depth = height_at(loading, 0.01 * s.stress);
-  const double start = height_at(loading, left);
-  const double squeeze = height_at(loading, 0.25 * s.stress) - height_at(loading, s.stress);
-  const double largest = start - loading.height.back();
-  const double remains = start - height_at(press.curve, left);
-  return std::vector{0.75 * s.stress * depth / squeeze, remains / largest};
+  const auto depth = height_at(loading, 0.01 * s.stress, true);
+  const auto start = height_at(loading, left, true);
+  const auto quarter = height_at(loading, 0.25 * s.stress, true);
+  const auto full = height_at(loading, s.stress, true);
+  const auto end = height_at(press.curve, left, false);
+  if (!depth || !start || !quarter || !full || !end || *quarter <= *full) {
+    session.fail(FailureKind::not_observed,
+                 "the stress does not rise steadily with the platen's way: `stress` is too small "
+                 "beside the bed's own weight and trembling");
+    return {};
+  }
+  const double largest = *start - loading.height.back();
+  return std::vector{0.75 * s.stress * *depth / (*quarter - *full), (*start - *end) / largest};
 }
 
 constexpr auto settings = infos(Compression::fields);

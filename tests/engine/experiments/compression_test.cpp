@@ -45,8 +45,16 @@ TEST_CASE("a stress that the grains cannot bear is a failure that says so", "[en
   t.experiment.settings["stress"] = 2e6;
   t.experiment.settings["speed"] = 0.1;
   const Failure failure = failure_in(evaluate(t));
-  CHECK((failure.kind == FailureKind::not_observed || failure.kind == FailureKind::unstable));
+  CHECK(failure.kind == FailureKind::unstable);
   CHECK_THAT(failure.message, Contains("too soft"));
+}
+
+TEST_CASE("a stress that drowns in the bed's own trembling is a failure that says so", "[engine]") {
+  Trial t = small_press();
+  t.experiment.settings["stress"] = 10.0;
+  const Failure failure = failure_in(evaluate(t));
+  CHECK(failure.kind == FailureKind::not_observed);
+  CHECK_THAT(failure.message, Contains("does not rise steadily"));
 }
 
 TEST_CASE("stiffer grains make a stiffer bed, but not more than Hertz springs", "[engine][slow]") {
