@@ -87,7 +87,8 @@ TEST_CASE("an answer reads back to the last bit", "[server]") {
   engine::Evaluation evaluation{kettle(), {}, {}};
   evaluation.outcome = std::vector<engine::Observation>{
       {"bulk_density", 0.1 + 0.2}, {"x", 5e-324}, {"y", -0.0}, {"z", 1.7976931348623157e308}};
-  evaluation.effort = {4000, 4100, 4200, 1'000'000, 18446744073709551615U, 99, 1e-5, 3.25, 0.0123, 0.004};
+  evaluation.effort = {
+      4000, 4100, 4200, 1'000'000, 18446744073709551615U, 99, 1e-5, 3.25, 0.0123, 0.004};
   const std::string text = print_answer(evaluation);
   const engine::Evaluation again = parse_answer(kettle(), text);
   const auto& seen = std::get<std::vector<engine::Observation>>(again.outcome);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <catch2/catch.hpp>
@@ -49,7 +50,8 @@ TEST_CASE("the bounds of a property are those of its values", "[server]") {
   for (const PublishedMaterial& material : material_library().materials) {
     for (const PublishedProperty& p : material.properties) {
       INFO(material.name << " " << p.name());
-      double lower = INFINITY, upper = -INFINITY;
+      constexpr double endless = std::numeric_limits<double>::infinity();
+      double lower = endless, upper = -endless;
       for (const PublishedValue& value : p.values) {
         CHECK(value.lower <= value.upper);
         lower = std::min(lower, value.lower);
