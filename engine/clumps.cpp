@@ -169,6 +169,12 @@ void Clumps::collect(const Grains& grains) {
   }
 }
 
+void Clumps::push(const std::function<Vec3(double, const Vec3&)>& force) {
+  for (ClumpBody& body : bodies_) {
+    body.force += force(body.scale * equivalent_diameter(shape(body)), body.velocity);
+  }
+}
+
 void Clumps::advance(double dt,
                      const Vec3& gravity,
                      const Vec3& period,

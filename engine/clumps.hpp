@@ -18,6 +18,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -82,6 +83,9 @@ class Clumps {
 
   /// Sums what the members of each body received in this step.
   void collect(const Grains& grains);
+  /// Adds to each body a force at its centre, of the diameter (m) of the sphere of its volume and
+  /// its velocity.
+  void push(const std::function<Vec3(double diameter, const Vec3& velocity)>& force);
   /// Moves the bodies by a step and writes the rows of their members. Where the scene is periodic a
   /// member keeps to the image in which its row was.
   void advance(double dt, const Vec3& gravity, const Vec3& period, std::vector<GrainRow>& rows);

@@ -8,7 +8,7 @@
 ///   Hertz         overlap, radius                    patch_radius, elastic_force, normal_force,
 ///                                                    grip_force
 ///   dissipation   patch_radius, mass, approach       normal_force, grip_force, shear_damping
-///   adhesion      overlap                            normal_force, grip_force
+///   adhesion      overlap, gap                       normal_force, grip_force
 ///   friction      slip, patch_radius, grip_force,    tangent_x..z
 ///                 shear_damping
 ///   rolling       roll, spins, elastic_force,        couple_x..z
@@ -74,6 +74,9 @@ struct ContactBlock {
   alignas(64) Column shear_damping;  ///< tangential dashpot, N s/m
   alignas(64) Column tangent_x, tangent_y, tangent_z;  ///< friction force on i, N
   alignas(64) Column couple_x, couple_y, couple_z;     ///< rolling couple on i (opposite on j), N m
+
+  /// Between surfaces, m, >= 0; only under laws that reach out.
+  alignas(64) Column gap;
 
   int count = 0;               ///< contacts in the block
   double modulus = 0.0;        ///< E* of the pair, Pa

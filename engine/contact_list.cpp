@@ -132,12 +132,13 @@ void ContactList::rebuild(Grains& grains,
                           const Vec3& period,
                           double horizon,
                           std::span<const std::uint32_t> body_of_id,
-                          const Team& team) {
+                          const Team& team,
+                          double reach) {
   const Memory pair_memory = remember(pairs, grains, Partner::grain);
   const Memory wall_memory = remember(walls, grains, Partner::wall);
   double largest = 0.0;
   for (const GrainRow& g : grains.rows) largest = std::max(largest, g.radius);
-  slowest_skin_ = least_skin * largest;
+  slowest_skin_ = least_skin * largest + reach;
   // Two slow grains of the largest size are always in neighbouring cells.
   grid_.sort(grains, period, 2.0 * (largest + 2.0 * slowest_skin_));
   const std::size_t n = grains.size();

@@ -49,13 +49,15 @@ class ContactList {
 
   /// Sorts the grains by cell and finds all candidates anew. `period` is 0 where not periodic;
   /// `horizon` is the time (s) a grain may fly before its skin is used up. `body_of_id` names the
-  /// clump of each id, if any: members of one clump are no candidates.
+  /// clump of each id, if any: members of one clump are no candidates. Contacts that are closed
+  /// stay candidates as far as their surfaces are not `reach` (m) apart.
   void rebuild(Grains& grains,
                std::span<const Surface> surfaces,
                const Vec3& period,
                double horizon,
                std::span<const std::uint32_t> body_of_id = {},
-               const Team& team = {});
+               const Team& team = {},
+               double reach = 0.0);
 
   /// The parts as last rebuilt. After the pairs of the last part come those across two parts and
   /// those that came by repairs.

@@ -72,6 +72,19 @@ template <Partner partner>
   }
 }
 
+/// Gaps of contacts that are apart; what overlaps has none.
+template <Partner partner>
+[[gnu::always_inline]] inline void gaps(ContactBlock& c) {
+  for (int k = 0; k < width; ++k) {
+    const double along = (c.i.x[k] - c.j.x[k]) * c.normal_x[k] +
+                         (c.i.y[k] - c.j.y[k]) * c.normal_y[k] +
+                         (c.i.z[k] - c.j.z[k]) * c.normal_z[k];
+    const double distance = partner == Partner::grain ? c.arm_i[k] + c.arm_j[k] : along;
+    const double gap = distance - c.i.radius[k] - c.j.radius[k];
+    c.gap[k] = c.overlap[k] > 0.0 || gap < 0.0 ? 0.0 : gap;
+  }
+}
+
 /// The ground law, from which effects depart: F = (4/3) E* sqrt(R*) d^(3/2), patch radius sqrt(R*
 /// d) (Hertz 1882; Johnson 1985, Contact Mechanics, section 4.2).
 [[gnu::always_inline]] inline void hertz(ContactBlock& c) {
@@ -107,6 +120,21 @@ template <Partner partner>
   }
 }
 
+/// Of contacts that are apart only effects that reach out keep a memory.
+template <std::size_t I>
+[[gnu::always_inline]] inline void forget_apart(const PairLaw& law,
+                                                const ContactBlock& block,
+                                                HistoryBlock history) {
+  using E = std::tuple_element_t<I, AllEffects>;
+  if constexpr (ContactHook<E> && !ReachHook<E>) {
+    if (!law.active[I]) return;
+    for (int column = 0; column < E::history_columns; ++column) {
+      double* const values = history.column(law.history_start[I] + column);
+      for (int i = 0; i < width; ++i) values[i] = block.overlap[i] > 0.0 ? values[i] : 0.0;
+    }
+  }
+}
+
 template <std::size_t I>
 [[gnu::always_inline]] inline void apply_one(const PairLaw& law,
                                              ContactBlock& block,
@@ -132,7 +160,15 @@ template <Partner partner>
 inline void apply_to(const PairLaw& law, ContactBlock& block, HistoryBlock history, double dt) {
   block.modulus = law.elastic.modulus;
   block.shear_modulus = law.elastic.shear_modulus;
+  constexpr std::make_index_sequence<effect_count> all;
   kinematics<partner>(block);
+  if (law.reaches) {
+    gaps<partner>(block);
+    const auto forget = [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (forget_apart<I>(law, block, history), ...);
+    };
+    forget(all);
+  }
   hertz(block);
   for (auto* column : {&block.shear_damping,
                        &block.tangent_x,
@@ -143,7 +179,6 @@ inline void apply_to(const PairLaw& law, ContactBlock& block, HistoryBlock histo
                        &block.couple_z}) {
     column->fill(0.0);
   }
-  constexpr std::make_index_sequence<effect_count> all;
   const auto contacts = [&]<std::size_t... I>(std::index_sequence<I...>) {
     (apply_one<I>(law, block, history, dt), ...);
   };
@@ -186,8 +221,37 @@ void bind_one(const ParameterSet& set, MaterialId partner, PairLaw& law) {
     if constexpr (ContactHook<E>) {
       law.history_start[I] = law.history_columns;
       law.history_columns += E::history_columns;
+      law.reaches = law.reaches || ReachHook<E>;
     }
     std::get<I>(law.coefficients) = E::prepare(parameters, law.elastic);
+  }
+}
+
+template <std::size_t I>
+double reach_of(const PairLaw& law, double reduced_radius) {
+  using E = std::tuple_element_t<I, AllEffects>;
+  if constexpr (ReachHook<E>) {
+    if (law.active[I]) return E::reach(std::get<I>(law.coefficients), reduced_radius);
+  }
+  return 0.0;
+}
+
+template <std::size_t I>
+void bind_body(const ParameterSet& set, BodyLaw& law) {
+  using E = std::tuple_element_t<I, AllEffects>;
+  if constexpr (BodyHook<E>) {
+    static_assert(E::scope == Scope::global);
+    const auto parameters = parameters_of<E>(set, {});
+    law.active[I] = is_active<E>(parameters);
+    std::get<I>(law.coefficients) = parameters;
+  }
+}
+
+template <std::size_t I>
+void body_one(const BodyLaw& law, double diameter, const Vec3& velocity, Vec3& force) {
+  using E = std::tuple_element_t<I, AllEffects>;
+  if constexpr (BodyHook<E>) {
+    if (law.active[I]) force += E::body(std::get<I>(law.coefficients), diameter, velocity);
   }
 }
 
@@ -213,6 +277,31 @@ ContactModel::ContactModel(const ParameterSet& parameters) {
     fold(std::make_index_sequence<effect_count>{});
     history_columns_ = std::max(history_columns_, laws_[i].history_columns);
   }
+  const auto bodies = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (bind_body<I>(parameters, body_), ...);
+  };
+  bodies(std::make_index_sequence<effect_count>{});
+  has_body_force_ = std::ranges::find(body_.active, true) != body_.active.end();
+}
+
+double ContactModel::reach(double largest_radius) const {
+  double farthest = 0.0;
+  for (const PairLaw& law : laws_) {
+    const auto fold = [&]<std::size_t... I>(std::index_sequence<I...>) {
+      ((farthest = std::max(farthest, reach_of<I>(law, largest_radius))), ...);
+    };
+    fold(std::make_index_sequence<effect_count>{});
+  }
+  return farthest;
+}
+
+Vec3 ContactModel::body_force(double diameter, const Vec3& velocity) const {
+  Vec3 force;
+  const auto fold = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (body_one<I>(body_, diameter, velocity, force), ...);
+  };
+  fold(std::make_index_sequence<effect_count>{});
+  return force;
 }
 
 }  // namespace repose::engine

@@ -18,7 +18,7 @@ struct CoefficientsOf {
   using type = NoCoefficients;
 };
 template <class E>
-requires ContactHook<E> || LoadHook<E>
+requires ContactHook<E> || LoadHook<E> || BodyHook<E>
 struct CoefficientsOf<E> {
   using type = typename E::Coefficients;
 };
@@ -36,6 +36,13 @@ struct PairLaw {
   std::array<bool, effect_count> active{};
   std::array<int, effect_count> history_start{};  ///< first history column of each active effect
   int history_columns = 0;
+  bool reaches = false;  ///< whether an active effect acts between surfaces that are apart
+  CoefficientsOfAll<AllEffects>::type coefficients;
+};
+
+/// What acts on every grain, contacts or not.
+struct BodyLaw {
+  std::array<bool, effect_count> active{};
   CoefficientsOfAll<AllEffects>::type coefficients;
 };
 
@@ -56,12 +63,20 @@ class ContactModel {
   [[nodiscard]] const Material& material(MaterialId id) const {
     return materials_[static_cast<std::size_t>(id)];
   }
+  /// How far from touch a contact may still act, of grains up to that radius, m.
+  [[nodiscard]] double reach(double largest_radius) const;
+  /// Whether grains feel a force that is neither contact nor gravity.
+  [[nodiscard]] bool has_body_force() const { return has_body_force_; }
+  /// That force on a grain with the volume of a sphere of that diameter (m), N.
+  [[nodiscard]] Vec3 body_force(double diameter, const Vec3& velocity) const;
   /// Columns of history a contact carries; the same for all laws.
   [[nodiscard]] int history_columns() const { return history_columns_; }
 
  private:
   std::array<Material, material_names.size()> materials_{};
   std::array<PairLaw, material_names.size()> laws_{};
+  BodyLaw body_;
+  bool has_body_force_ = false;
   int history_columns_ = 0;
 };
 

@@ -7,7 +7,9 @@
 ///   shape      once, when grains are made: the spheres of which a grain consists
 ///   prepare    once per material pair: Parameters, pair elasticity -> Coefficients
 ///   contact    each step, per block of contacts: columns in, columns out
+///   reach      each time neighbours are sought: how far from touch it still acts, m
 ///   load       the same after the sums: what each grain receives for itself, not as one of a pair
+///   body       each step, per grain, contacts or not: diameter and velocity -> force
 ///
 /// At the null value of all its parameters an effect is exactly absent.
 #pragma once
@@ -21,6 +23,7 @@
 #include "engine/contact_block.hpp"
 #include "engine/field.hpp"
 #include "engine/random.hpp"
+#include "engine/vec3.hpp"
 
 namespace repose::engine {
 
@@ -77,6 +80,18 @@ concept LoadHook = requires(ContactBlock& block, const typename E::Coefficients&
   { E::load(block, coefficients) } -> std::same_as<void>;
 };
 
+/// The block's `gap` is there for its contacts; from touch on they stay closed until their gap
+/// exceeds the reach of the largest grains.
+template <class E>
+concept ReachHook = ContactHook<E> && requires(const typename E::Coefficients& coefficients) {
+  { E::reach(coefficients, 0.0) } -> std::same_as<double>;  // of a reduced radius, m
+};
+
+template <class E>
+concept BodyHook = requires(const typename E::Coefficients& coefficients, const Vec3& velocity) {
+  { E::body(coefficients, 0.0, velocity) } -> std::same_as<Vec3>;  // diameter, m
+};
+
 template <class E>
 concept PopulateHook = requires(const typename E::Parameters& parameters, Random& random) {
   { E::populate(parameters, random) } -> std::same_as<double>;  // grain volume over mean volume
@@ -97,6 +112,6 @@ concept Effect = requires {
   E::fields;
 }
 &&sizeof(typename E::Parameters) == E::fields.size() * sizeof(double) &&
-    (ContactHook<E> || LoadHook<E> || PopulateHook<E> || ShapeHook<E>);
+    (ContactHook<E> || LoadHook<E> || BodyHook<E> || PopulateHook<E> || ShapeHook<E>);
 
 }  // namespace repose::engine

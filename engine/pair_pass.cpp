@@ -1,6 +1,7 @@
 #include "engine/pair_pass.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "engine/any_machine.hpp"
@@ -54,6 +55,18 @@ Sides sides_of(const Period& period) {
   to_nearest(x, sides.x, sides.half_x);
   to_nearest(y, sides.y, sides.half_y);
   return bits_of(x * x + y * y + z * z < reach * reach);
+}
+
+/// Whether two rows that do not overlap are within reach of one another.
+bool within_reach(const PairPass& p, std::uint32_t i, std::uint32_t j) {
+  const GrainRow& a = p.rows[i];
+  const GrainRow& b = p.rows[j];
+  const auto nearest = [](double d, double period) {
+    return period > 0.0 ? std::min(std::abs(d), period - std::abs(d)) : d;
+  };
+  const double x = nearest(a.x - b.x, p.period.x), y = nearest(a.y - b.y, p.period.y);
+  const double z = a.z - b.z, far = a.radius + b.radius + p.reach;
+  return x * x + y * y + z * z < far * far;
 }
 
 /// Gathers four lanes of a block. Lanes from `used` on are idle.
@@ -111,7 +124,8 @@ Sides sides_of(const Period& period) {
   std::copy_n(waiting.candidates.begin() + c.count, lanes_at_once, waiting.candidates.begin());
 }
 
-/// Tests up to four candidates, from `first` on, and has those wait that touch.
+/// Tests up to four candidates, from `first` on, and has those wait that touch, or that have
+/// touched and are within reach.
 [[gnu::always_inline]] inline void visit(PairPass& p,
                                          Waiting& waiting,
                                          const Sides& sides,
@@ -126,7 +140,11 @@ Sides sides_of(const Period& period) {
     waiting.count += touches ? 1 : 0;
     __builtin_prefetch(p.loads + j[q], 1);
     if (!touches && p.candidates.closed[first + q] != 0) {
-      p.candidates.open(first + q, p.history_columns);
+      if (p.reach > 0.0 && within_reach(p, i[q], j[q])) {
+        ++waiting.count;
+      } else {
+        p.candidates.open(first + q, p.history_columns);
+      }
     }
   }
 }

@@ -12,7 +12,8 @@ namespace repose::engine {
 struct PairPass {
   const PairLaw& law;
   Period period;
-  double dt;  ///< s
+  double dt;     ///< s
+  double reach;  ///< gap up to which a contact that has closed stays closed, m
   const GrainRow* rows;
   GrainLoad* loads;
   Candidates& candidates;

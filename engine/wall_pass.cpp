@@ -77,9 +77,10 @@ inline void push_all(WallPass& p) {
   for (std::uint32_t k = 0; k < all.size(); ++k) {
     const GrainRow& grain = p.rows[all.i[k]];
     const Surface& surface = p.surfaces[all.j[k]];
-    const Vec3 offset = offset_from(surface, grain.centre(), grain.radius);
+    const double far = all.closed[k] != 0 ? grain.radius + p.reach : grain.radius;
+    const Vec3 offset = offset_from(surface, grain.centre(), far);
     const double squared = dot(offset, offset);
-    if (squared >= grain.radius * grain.radius || squared <= 0.0) {
+    if (squared >= far * far || squared <= 0.0) {
       if (all.closed[k] != 0) all.open(k, p.history_columns);
       continue;
     }

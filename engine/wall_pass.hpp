@@ -15,7 +15,8 @@ namespace repose::engine {
 struct WallPass {
   const ContactModel& model;
   std::span<const Surface> surfaces;
-  double dt;  ///< s
+  double dt;     ///< s
+  double reach;  ///< gap up to which a contact that has closed stays closed, m
   const GrainRow* rows;
   GrainLoad* loads;
   std::span<WallLoad> wall_loads;  ///< one for each surface; added to

@@ -113,12 +113,16 @@ void World::turn_gravity(double rate) {
 }
 
 void World::rebuild() {
+  double largest = 0.0;
+  for (const GrainRow& row : grains_.rows) largest = std::max(largest, row.radius);
+  reach_ = model_.reach(largest);
   list_.rebuild(grains_,
                 surfaces_,
                 options_.period,
                 horizon_steps * options_.time_step,
                 clumps_.bodies_of_ids(),
-                options_.team);
+                options_.team,
+                reach_);
   desks_.resize(list_.parts().size());
   if (!clumps_.empty()) clumps_.locate(grains_, options_.period);
   grains_.loads.resize(grains_.size());
@@ -132,6 +136,7 @@ void World::push_pairs(std::size_t first, std::size_t last, Desk& desk) {
   PairPass pass{.law = model_.law(MaterialId::grain),
                 .period = {options_.period.x, options_.period.y},
                 .dt = options_.time_step,
+                .reach = reach_,
                 .rows = grains_.rows.data(),
                 .loads = grains_.loads.data(),
                 .candidates = list_.pairs,
@@ -158,6 +163,7 @@ void World::push_walls() {
   WallPass pass{.model = model_,
                 .surfaces = surfaces_,
                 .dt = options_.time_step,
+                .reach = reach_,
                 .rows = grains_.rows.data(),
                 .loads = grains_.loads.data(),
                 .wall_loads = wall_loads_,
@@ -168,9 +174,25 @@ void World::push_walls() {
   closed_ += pass.closed;
 }
 
+/// Forces on single spheres that are no contacts'; on clumps they act as a whole.
+void World::push_spheres() {
+  for (std::size_t k = 0; k < grains_.size(); ++k) {
+    if (clumps_.body_of(grains_.ids[k]) != no_body) continue;
+    const GrainRow& row = grains_.rows[k];
+    const Vec3 force = model_.body_force(2.0 * row.radius, row.velocity());
+    grains_.loads[k].fx += force.x;
+    grains_.loads[k].fy += force.y;
+    grains_.loads[k].fz += force.z;
+  }
+}
+
 /// Members of clumps have no motion of their own: what they get with the others is overwritten.
 void World::move() {
   if (!clumps_.empty()) clumps_.collect(grains_);
+  if (model_.has_body_force()) {
+    push_spheres();
+    clumps_.push([&](double d, const Vec3& velocity) { return model_.body_force(d, velocity); });
+  }
   const std::span<const Part> parts = list_.parts();
   share(options_.team, parts.size(), [&](std::size_t k) {
     Motion motion{gravity_,

@@ -112,12 +112,14 @@ class World {
   void push_pairs();
   void push_pairs(std::size_t first, std::size_t last, Desk& desk);
   void push_walls();
+  void push_spheres();
   void move();
   void move_walls();
 
   ContactModel model_;
   WorldOptions options_;
   Vec3 gravity_;
+  double reach_ = 0.0;  ///< from touch, of the grains there are, m
   double turn_rate_ = 0.0;
   double turn_start_ = 0.0;
   Grains grains_;

@@ -3,16 +3,24 @@
 
 #include <tuple>
 
+#include "engine/effects/air_drag.hpp"
 #include "engine/effects/area_cohesion.hpp"
+#include "engine/effects/capillary_bridge.hpp"
 #include "engine/effects/elastic_rolling_resistance.hpp"
 #include "engine/effects/grain_shape.hpp"
+#include "engine/effects/hysteresis.hpp"
+#include "engine/effects/jkr_adhesion.hpp"
 #include "engine/effects/log_normal_sizes.hpp"
 #include "engine/effects/own_spin_rolling_resistance.hpp"
+#include "engine/effects/plastic_restitution.hpp"
 #include "engine/effects/restitution.hpp"
 #include "engine/effects/rolling_resistance.hpp"
 #include "engine/effects/size_spread.hpp"
 #include "engine/effects/sliding_friction.hpp"
 #include "engine/effects/tabulated_sizes.hpp"
+#include "engine/effects/twisting_resistance.hpp"
+#include "engine/effects/velocity_restitution.hpp"
+#include "engine/effects/velocity_weakening.hpp"
 
 namespace repose::engine {
 
@@ -20,12 +28,20 @@ using AllEffects = std::tuple<effects::SizeSpread,
                               effects::LogNormalSizes,
                               effects::TabulatedSizes,
                               effects::GrainShape,
+                              effects::PlasticRestitution,
+                              effects::Hysteresis,
                               effects::Restitution,
+                              effects::VelocityRestitution,
                               effects::AreaCohesion,
+                              effects::JkrAdhesion,
+                              effects::CapillaryBridge,
+                              effects::VelocityWeakening,
                               effects::SlidingFriction,
                               effects::RollingResistance,
                               effects::ElasticRollingResistance,
-                              effects::OwnSpinRollingResistance>;
+                              effects::OwnSpinRollingResistance,
+                              effects::TwistingResistance,
+                              effects::AirDrag>;
 
 inline constexpr std::size_t effect_count = std::tuple_size_v<AllEffects>;
 
