@@ -16,6 +16,8 @@ enum class Purpose : std::uint64_t {
   trial = 16,     ///< the seed of an evaluation
   design = 17,    ///< space-filling points
   proposal = 18,  ///< draws from an emulator
+  diagnosis = 19,       ///< the seed of a diagnosis' evaluation, and its designs
+  diagnosis_null = 20,  ///< data drawn from a model in which nothing is missing
 };
 
 class Random {
