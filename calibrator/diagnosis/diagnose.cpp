@@ -20,7 +20,8 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 constexpr int probe_replicates = 2;
-constexpr double probe_strength = 0.8;  // large steps beat replicates: the trace is read above noise
+constexpr double probe_strength =
+    0.8;  // large steps beat replicates: the trace is read above noise
 constexpr std::uint64_t anchor_design = 1'000'000, refit_design = 2'000'000;  // apart by index
 
 UnitPoint unit_point(const Vector& x, std::size_t dimensions) {
@@ -99,10 +100,7 @@ bool Inquiry::ask(const std::string& stage, const Points& points) {
 }
 
 /// Latin hypercube over the whole box, or over a share of it about a point.
-Inquiry::Points Inquiry::spread(const Additions& on,
-                                int count,
-                                const Vector* about,
-                                double share) {
+Inquiry::Points Inquiry::spread(const Additions& on, int count, const Vector* about, double share) {
   const ModelSpace space = models_->space(on);
   Points points;
   for (const UnitPoint& u : latin_hypercube(static_cast<std::size_t>(count),
@@ -118,8 +116,7 @@ Inquiry::Points Inquiry::spread(const Additions& on,
       double x = space.lower(i) + u[k] * (upper - space.lower(i));
       if (about != nullptr) {
         const double radius = strength ? share * 5.0 / 3.0 : share;
-        x = std::clamp(
-            (*about)(i) + radius * (2.0 * u[k] - 1.0), space.lower(i), space.upper(i));
+        x = std::clamp((*about)(i) + radius * (2.0 * u[k] - 1.0), space.lower(i), space.upper(i));
       }
       if (strength) {
         point.strengths[on[k - dimensions_]] = x;
@@ -191,14 +188,16 @@ bool Inquiry::probe(Diagnosis& diagnosis) {
     const bool failed = std::ranges::find(suspects, k) != suspects.end();
     if (question_.suspects[k].objection.empty() && !failed) screened_.push_back(k);
     if (failed) {
-      diagnosis.effects[k].suspect.objection = "every run with it failed, even at a fifth of its "
-                                               "strong value";
+      diagnosis.effects[k].suspect.objection =
+          "every run with it failed, even at a fifth of its "
+          "strong value";
     }
   }
   return true;
 }
 
-/// Change of the fitted measurements per unit of strength; `noise` is its variance in sum, whitened.
+/// Change of the fitted measurements per unit of strength; `noise` is its variance in sum,
+/// whitened.
 Vector Inquiry::trace_of(std::size_t suspect, double& noise) const {
   const std::vector<Index>& fitted = models_->fitted();
   const Vector before = base_->emulator.mean(probed_)(fitted);
@@ -209,14 +208,14 @@ Vector Inquiry::trace_of(std::size_t suspect, double& noise) const {
     const auto found = run.strengths.find(suspect);
     if (found == run.strengths.end() || !observed(fitted, run)) continue;
     strength = found->second;
-    sum += Eigen::Map<const Vector>(run.values.data(), static_cast<Index>(run.values.size()))(
-        fitted);
+    sum +=
+        Eigen::Map<const Vector>(run.values.data(), static_cast<Index>(run.values.size()))(fitted);
     ++count;
   }
   const Matrix& whitener = base_->fit.whitener;
   const Vector run_noise = base_->emulator.noise()(fitted) / count;
-  const Vector variance = (run_noise + base_->emulator.variance(probed_)(fitted)) /
-                          (strength * strength);
+  const Vector variance =
+      (run_noise + base_->emulator.variance(probed_)(fitted)) / (strength * strength);
   noise = (whitener * variance.asDiagonal() * whitener.transpose()).trace();
   return (sum / count - before) / strength;
 }
@@ -280,11 +279,10 @@ void Inquiry::screen(Diagnosis& diagnosis) {
   }
   for (std::size_t i = 0; i < excuses_.size(); ++i) {
     const double value = screen_->scores()[screened_.size() + i].value;
-    diagnosis.excuses.push_back(
-        {.observable = excuses_[i].observable,
-         .setting = excuses_[i].setting,
-         .score = value,
-         .p = share_at_least(null, &Screen::Draw::unnamed, value)});
+    diagnosis.excuses.push_back({.observable = excuses_[i].observable,
+                                 .setting = excuses_[i].setting,
+                                 .score = value,
+                                 .p = share_at_least(null, &Screen::Draw::unnamed, value)});
   }
 }
 
@@ -454,9 +452,8 @@ std::optional<Diagnosis> Inquiry::run() {
   if (!adequate(diagnosis)) {
     std::vector<Additions> best;
     std::vector<std::size_t> order = screened_;
-    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t k) {
-      return diagnosis.effects[k].score;
-    });
+    std::ranges::stable_sort(
+        order, std::greater<>(), [&](std::size_t k) { return diagnosis.effects[k].score; });
     for (std::size_t i = 0; i < std::min<std::size_t>(3, order.size()); ++i) {
       best.push_back({order[i]});
     }

@@ -67,13 +67,13 @@ struct Refit {
 struct EffectFinding {
   Suspect suspect;
   EffectStatus status = EffectStatus::not_probed;
-  double score = 0.0;           ///< what the deviance would fall by, one step
-  double p = 1.0;               ///< that any effect scores so high where nothing is missing
-  double strength = 0.0;        ///< one step; a refit's is better
-  double strength_upper = 0.0;  ///< larger ones are excluded, 95 %
-  double detectable = 0.0;      ///< the strength found with a chance of 80 %
-  double absorbed = 0.0;        ///< share of its trace that the free parameters imitate
-  double probe_noise = 0.0;     ///< share of the scatter of the probing runs in its trace
+  double score = 0.0;               ///< what the deviance would fall by, one step
+  double p = 1.0;                   ///< that any effect scores so high where nothing is missing
+  double strength = 0.0;            ///< one step; a refit's is better
+  double strength_upper = 0.0;      ///< larger ones are excluded, 95 %
+  double detectable = 0.0;          ///< the strength found with a chance of 80 %
+  double absorbed = 0.0;            ///< share of its trace that the free parameters imitate
+  double probe_noise = 0.0;         ///< share of the scatter of the probing runs in its trace
   std::vector<double> change = {};  ///< SI, of each measurement per unit of strength
   std::vector<double> trace = {};   ///< in standard errors, what the free parameters cannot imitate
 };
@@ -93,21 +93,21 @@ struct Excuse {
 struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::adequate;
   Grade grade = Grade::none;
-  std::string sentence;         ///< the verdict for people
-  double p_named = 1.0;         ///< of the largest score of an effect
-  double p_unnamed = 1.0;       ///< of the largest score of an excuse
-  double p_misfit = 1.0;        ///< of the calibrated model's misfit
-  double misfit = 0.0;          ///< its Q
-  double freedom = 0.0;         ///< targets less fitted directions
+  std::string sentence;                     ///< the verdict for people
+  double p_named = 1.0;                     ///< of the largest score of an effect
+  double p_unnamed = 1.0;                   ///< of the largest score of an excuse
+  double p_misfit = 1.0;                    ///< of the calibrated model's misfit
+  double misfit = 0.0;                      ///< its Q
+  double freedom = 0.0;                     ///< targets less fitted directions
   double fitted_z = 0.0, held_out_z = 0.0;  ///< root mean square before anything is added
   engine::ParameterSet parameters;          ///< where it was probed: the most probable set
   std::vector<double> predicted;            ///< SI, one per measurement, there
   std::vector<EffectFinding> effects;
-  std::vector<Excuse> excuses;              ///< best first
-  std::vector<Refit> refits;                ///< best first
-  std::vector<std::size_t> plausible;       ///< indices into `refits` that the data cannot tell apart
+  std::vector<Excuse> excuses;         ///< best first
+  std::vector<Refit> refits;           ///< best first
+  std::vector<std::size_t> plausible;  ///< indices into `refits` that the data cannot tell apart
   std::vector<std::vector<std::size_t>> families;  ///< effects with the same trace
-  int evaluations = 0;                      ///< spent by the diagnosis
+  int evaluations = 0;                             ///< spent by the diagnosis
   std::vector<std::string> remarks;
 };
 

@@ -60,8 +60,8 @@ std::vector<ExcuseDirection> excuse_directions(const DiagnosisQuestion& question
   std::vector<std::string> observables;  // in the order of the study
   std::map<std::string, std::vector<std::size_t>> rows;
   for (std::size_t i = 0; i < fitted.size(); ++i) {
-    const std::string name = observable_name(
-        question.calibration.measurements[static_cast<std::size_t>(fitted[i])]);
+    const std::string name =
+        observable_name(question.calibration.measurements[static_cast<std::size_t>(fitted[i])]);
     if (rows[name].empty()) observables.push_back(name);
     rows[name].push_back(i);
   }
@@ -79,8 +79,8 @@ std::vector<ExcuseDirection> excuse_directions(const DiagnosisQuestion& question
     std::vector<std::map<std::string, double>> settings;
     std::set<std::string> names;
     for (const std::size_t row : rows[observable]) {
-      settings.push_back(settings_of(
-          question.calibration.measurements[static_cast<std::size_t>(fitted[row])]));
+      settings.push_back(
+          settings_of(question.calibration.measurements[static_cast<std::size_t>(fitted[row])]));
       for (const auto& [name, value] : settings.back()) names.insert(name);
     }
     for (const std::string& name : names) {
@@ -95,9 +95,7 @@ ExcuseFit fit_excuse(const Models& models, const Model& base, const ExcuseDirect
   const Index d = base.fit.at.size();
   const Predictor own = models.predictor(base.emulator);
   const Predictor predictor{
-      [&](const Vector& x) -> Vector {
-        return own.mean(x.head(d)) + x(d) * direction.change;
-      },
+      [&](const Vector& x) -> Vector { return own.mean(x.head(d)) + x(d) * direction.change; },
       [&](const Vector& x) {
         Eigen::MatrixXd jacobian(direction.change.size(), d + 1);
         jacobian << own.jacobian(x.head(d)), direction.change;
@@ -115,11 +113,8 @@ ExcuseFit fit_excuse(const Models& models, const Model& base, const ExcuseDirect
                          extend(base.space.precision, 1.0 / prior_deviation)};
   const std::vector<Vector> starts{
       extend(base.fit.at, 0.0), extend(base.fit.at, 0.05), extend(base.fit.at, -0.05)};
-  const ModelFit fit = fit_model(predictor,
-                                 models.targets(),
-                                 models.covariance(base.emulator, base.fit.at),
-                                 space,
-                                 starts);
+  const ModelFit fit = fit_model(
+      predictor, models.targets(), models.covariance(base.emulator, base.fit.at), space, starts);
   return {fit.at(d), fit.deviance, fit.misfit, fit.freedom};
 }
 

@@ -1,6 +1,6 @@
 /// Excuses: departures that are no physics of the grains: an apparatus that reads wrongly, by the
-/// same share everywhere or along a condition of the experiment. They need no runs. Where one does as
-/// well as an effect the effect is not proved; where one does better it says where to look.
+/// same share everywhere or along a condition of the experiment. They need no runs. Where one does
+/// as well as an effect the effect is not proved; where one does better it says where to look.
 #pragma once
 
 #include <string>

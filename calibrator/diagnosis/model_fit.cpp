@@ -47,8 +47,7 @@ std::vector<Index> not_held(const Place& place, const ModelSpace& space, const V
 }
 
 Vector downhill(const Problem& problem, const Place& place, const Matrix& jacobian) {
-  return jacobian.transpose() * place.residuals +
-         problem.space.precision.cwiseProduct(place.pull);
+  return jacobian.transpose() * place.residuals + problem.space.precision.cwiseProduct(place.pull);
 }
 
 Matrix curvature(const Problem& problem, const Matrix& jacobian) {

@@ -6,8 +6,8 @@
 ///   x  coordinates of the free parameters, then strengths     y  targets     f  emulator's mean
 ///   Sigma  of the targets and of the emulator at x            m, s  weak normal prior
 ///
-/// Search: Levenberg-Marquardt, projected on the box (Kanzow, Yamashita & Fukushima 2004, J. Comput.
-/// Appl. Math. 172, 375-397).
+/// Search: Levenberg-Marquardt, projected on the box (Kanzow, Yamashita & Fukushima 2004, J.
+/// Comput. Appl. Math. 172, 375-397).
 #pragma once
 
 #include <functional>
@@ -32,13 +32,13 @@ struct ModelSpace {
 
 struct ModelFit {
   Eigen::VectorXd at;
-  Eigen::VectorXd residuals;  ///< whitened: L^-1 (y - f)
-  Eigen::MatrixXd jacobian;   ///< whitened: L^-1 df/dx
-  Eigen::MatrixXd whitener;   ///< L^-1
-  double objective = 0.0;     ///< F
-  double misfit = 0.0;        ///< Q, sum of squared residuals
-  double deviance = 0.0;      ///< Q + log det Sigma: -2 log likelihood but for a constant
-  double freedom = 0.0;       ///< targets less the effective number of fitted parameters
+  Eigen::VectorXd residuals;         ///< whitened: L^-1 (y - f)
+  Eigen::MatrixXd jacobian;          ///< whitened: L^-1 df/dx
+  Eigen::MatrixXd whitener;          ///< L^-1
+  double objective = 0.0;            ///< F
+  double misfit = 0.0;               ///< Q, sum of squared residuals
+  double deviance = 0.0;             ///< Q + log det Sigma: -2 log likelihood but for a constant
+  double freedom = 0.0;              ///< targets less the effective number of fitted parameters
   std::vector<Eigen::Index> inside;  ///< coordinates that no bound holds
 };
 

@@ -80,8 +80,8 @@ Model Models::fit(const Additions& on, std::span<const Vector> starts) const {
       predictor, targets_, covariance(model.emulator, starts.front()), model.space, starts);
   // The emulator's own uncertainty is the one where the model came to lie.
   const std::vector<Vector> again{model.fit.at};
-  model.fit = fit_model(
-      predictor, targets_, covariance(model.emulator, model.fit.at), model.space, again);
+  model.fit =
+      fit_model(predictor, targets_, covariance(model.emulator, model.fit.at), model.space, again);
   return model;
 }
 
@@ -106,8 +106,7 @@ Models::Range Models::strength_range(const Model& model) const {
       const ModelFit fit =
           fit_model(predictor, targets_, covariance(model.emulator, x), held, starts);
       x = fit.at;
-      deviance[static_cast<std::size_t>(i)] =
-          fit.deviance - fit.misfit + fit.objective;
+      deviance[static_cast<std::size_t>(i)] = fit.deviance - fit.misfit + fit.objective;
     }
   };
   walk(middle, steps, 1);

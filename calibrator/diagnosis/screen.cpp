@@ -42,8 +42,7 @@ Score score_of(double slope, double information, bool two_sided) {
   Score score;
   score.information = std::max(information, 1e-9);
   score.strength = std::clamp(slope / score.information, lower, largest_strength);
-  score.value =
-      std::max(0.0, (2.0 * slope - score.strength * score.information) * score.strength);
+  score.value = std::max(0.0, (2.0 * slope - score.strength * score.information) * score.strength);
   return score;
 }
 
@@ -76,8 +75,8 @@ Screen::Screen(const ModelFit& base, const ModelSpace& space, std::vector<Depart
   products_ = projected_ * whitened.transpose();
   similarity_ = products_;
   for (Index k = 0; k < count; ++k) {
-    Score score = score_of(
-        slopes_(k), products_(k, k), departures_[static_cast<std::size_t>(k)].two_sided);
+    Score score =
+        score_of(slopes_(k), products_(k, k), departures_[static_cast<std::size_t>(k)].two_sided);
     const double whole = whitened.row(k).squaredNorm();
     score.absorbed = whole > 0.0 ? std::clamp(1.0 - products_(k, k) / whole, 0.0, 1.0) : 1.0;
     scores_.push_back(score);

@@ -3,11 +3,11 @@
 ///   U_k = g_k' P r     I_k = g_k' P g_k     phi_k = U_k / I_k     S_k = 2 phi_k U_k - phi_k^2 I_k
 ///   absorbed_k = 1 - I_k / |g_k|^2          c_jk = g_j' P g_k / sqrt(I_j I_k)
 ///
-///   r  whitened residuals, then the prior's     g_k  whitened change of the predictions per unit of
-///   strength, then zeros     P  projector off the tangent space of the free parameters
+///   r  whitened residuals, then the prior's     g_k  whitened change of the predictions per unit
+///   of strength, then zeros     P  projector off the tangent space of the free parameters
 ///
-/// phi is held within 0 (or its mirror image, where strengths have two signs) and 1.3. A change that
-/// the free parameters can imitate is absorbed: it leaves no trace whatever its strength.
+/// phi is held within 0 (or its mirror image, where strengths have two signs) and 1.3. A change
+/// that the free parameters can imitate is absorbed: it leaves no trace whatever its strength.
 ///
 /// Source: score test, Rao 1948, Proc. Camb. Phil. Soc. 44, 50-57; one-sided at a bound, Self &
 /// Liang 1987, J. Am. Stat. Assoc. 82, 605-610; projection, Plumlee 2017, J. Am. Stat. Assoc. 112,

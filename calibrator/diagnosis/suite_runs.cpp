@@ -37,19 +37,18 @@ void SuiteRuns::run(std::span<const Point> points) {
       run.strengths[suspect] = snapped;
     }
     // A function of the question alone, so that a replay asks the same.
-    const std::uint64_t seed = engine::Random(calibration_.seed,
-                                              engine::Purpose::diagnosis,
-                                              static_cast<std::uint64_t>(spent_++))
-                                   .bits() >>
-                               11U;
+    const std::uint64_t seed =
+        engine::Random(
+            calibration_.seed, engine::Purpose::diagnosis, static_cast<std::uint64_t>(spent_++))
+            .bits() >>
+        11U;
     suite_.append_trials(parameters, calibration_.budget.fidelity, seed, trials);
     asked.push_back(std::move(run));
   }
   const std::vector<engine::Evaluation> evaluations = evaluator_(trials);
   assert(evaluations.size() == trials.size());
   for (std::size_t i = 0; i < asked.size(); ++i) {
-    asked[i].values =
-        suite_.read(std::span(evaluations).subspan(i * suite_.size(), suite_.size()));
+    asked[i].values = suite_.read(std::span(evaluations).subspan(i * suite_.size(), suite_.size()));
     runs_.push_back(std::move(asked[i]));
   }
 }
@@ -63,10 +62,10 @@ SuiteRuns::Table SuiteRuns::table(std::span<const std::size_t> on) const {
     if (within) used.push_back(&run);
   }
   const std::size_t d = space_.dimensions(), m = calibration_.measurements.size();
-  Table table{Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(used.size()),
-                                    static_cast<Eigen::Index>(d + on.size())),
-              Eigen::MatrixXd(static_cast<Eigen::Index>(used.size()),
-                              static_cast<Eigen::Index>(m))};
+  Table table{
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(used.size()),
+                            static_cast<Eigen::Index>(d + on.size())),
+      Eigen::MatrixXd(static_cast<Eigen::Index>(used.size()), static_cast<Eigen::Index>(m))};
   for (std::size_t i = 0; i < used.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     for (std::size_t k = 0; k < d; ++k) {

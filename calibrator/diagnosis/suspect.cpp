@@ -74,8 +74,8 @@ Suspect suspect_of(const EffectInfo& effect, const engine::GrainScale& grains) {
 
 /// Walls whose friction follows the grains' may have one of their own.
 void add_wall_friction(const Calibration& calibration, std::vector<Suspect>& suspects) {
-  const ParameterKey wall = engine::make_key("sliding_friction.coefficient",
-                                             {MaterialId::grain, MaterialId::wall});
+  const ParameterKey wall =
+      engine::make_key("sliding_friction.coefficient", {MaterialId::grain, MaterialId::wall});
   const bool follows =
       std::ranges::find(calibration.tied, wall, &Tie::key) != calibration.tied.end();
   if (!follows) return;

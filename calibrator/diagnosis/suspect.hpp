@@ -1,5 +1,5 @@
-/// Suspect: a physical effect that a model may lack, on a scale of strength: 0 is absent, 1 is strong
-/// but plausible.
+/// Suspect: a physical effect that a model may lack, on a scale of strength: 0 is absent, 1 is
+/// strong but plausible.
 ///
 ///   value = null + strength (strong - null)        of each of its parameters, held to their bounds
 ///   value = what the model has (1 + swing strength)  where the effect changes a parameter in use

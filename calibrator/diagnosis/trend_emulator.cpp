@@ -38,7 +38,10 @@ Matrix squared_distances(const Matrix& runs) {
   return d2.cwiseMax(0.0);
 }
 
-Option weigh(const Matrix& correlation, const Matrix& trend_inputs, const Matrix& y, double nugget) {
+Option weigh(const Matrix& correlation,
+             const Matrix& trend_inputs,
+             const Matrix& y,
+             double nugget) {
   Option option;
   option.nugget = nugget;
   Matrix covariance = correlation;
@@ -145,13 +148,12 @@ Vector TrendEmulator::mean(const Vector& x) const {
 
 Matrix TrendEmulator::jacobian(const Vector& x) const {
   const Vector scaled = x.cwiseQuotient(scale_);
-  Matrix result =
-      Matrix::Constant(outputs(), x.size(), std::numeric_limits<double>::quiet_NaN());
+  Matrix result = Matrix::Constant(outputs(), x.size(), std::numeric_limits<double>::quiet_NaN());
   for (const Block& block : blocks_) {
     const Vector k = correlations(block, scaled) / (block.length * block.length);
     const Matrix slopes = (block.runs.rowwise() - scaled.transpose()).array().colwise() * k.array();
-    const Matrix local = block.trend.bottomRows(scaled.size()).transpose() +
-                         block.weights.transpose() * slopes;
+    const Matrix local =
+        block.trend.bottomRows(scaled.size()).transpose() + block.weights.transpose() * slopes;
     result(block.outputs, Eigen::all) = local.array().rowwise() / scale_.transpose().array();
   }
   return result;

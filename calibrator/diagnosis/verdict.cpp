@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-
 #include <unsupported/Eigen/SpecialFunctions>
 
 #include "calibrator/diagnosis/chi_squared.hpp"
@@ -12,9 +11,9 @@ namespace repose::calibrator {
 namespace {
 
 constexpr double alpha_named = 0.03, alpha_unnamed = 0.015, alpha_misfit = 0.005;
-constexpr double close = 6.0;      // of two deviances
-constexpr double fits = 0.02;      // p of a misfit that nothing more needs to explain
-constexpr double alike = 0.95;     // similarity of two traces that are one
+constexpr double close = 6.0;   // of two deviances
+constexpr double fits = 0.02;   // p of a misfit that nothing more needs to explain
+constexpr double alike = 0.95;  // similarity of two traces that are one
 constexpr double one_sided = 1.645;
 
 std::string percent(double share) {
@@ -80,25 +79,29 @@ void conclude_adequate(Diagnosis& diagnosis) {
         "whatever they say. More kinds of measurement are needed than there are directions learnt.";
     return;
   }
-  diagnosis.sentence = "The model is adequate within the stated tolerance: nothing is missing that "
-                       "these data would show.";
+  diagnosis.sentence =
+      "The model is adequate within the stated tolerance: nothing is missing that "
+      "these data would show.";
   if (!open.empty()) diagnosis.sentence += " They cannot test: " + open + ".";
 }
 
 void conclude_outside(Diagnosis& diagnosis, const Excuse& excuse) {
   diagnosis.verdict = DiagnosisVerdict::outside;
   diagnosis.grade = Grade::c;
-  diagnosis.sentence = "Something outside the catalogue is missing, and it sits at one place: " +
-                       describe(excuse) + ". Check that apparatus, or measure the same elsewhere.";
+  diagnosis.sentence =
+      "Something outside the catalogue is missing, and it sits at one place: " + describe(excuse) +
+      ". Check that apparatus, or measure the same elsewhere.";
 }
 
 void conclude_unexplained(Diagnosis& diagnosis) {
   diagnosis.verdict = DiagnosisVerdict::unexplained;
   diagnosis.grade = Grade::d;
-  diagnosis.sentence = "Something is missing that neither the catalogue nor an error of one "
-                       "apparatus explains.";
+  diagnosis.sentence =
+      "Something is missing that neither the catalogue nor an error of one "
+      "apparatus explains.";
   if (!diagnosis.refits.empty()) {
-    diagnosis.sentence += " Of the effects, " + titles(diagnosis, diagnosis.refits.front().effects, "and") +
+    diagnosis.sentence += " Of the effects, " +
+                          titles(diagnosis, diagnosis.refits.front().effects, "and") +
                           " comes closest.";
   }
 }
@@ -120,8 +123,8 @@ void conclude_named(Diagnosis& diagnosis, const Excuse* excuse, double margin) {
     diagnosis.sentence = titles(diagnosis, names, "") + " is missing.";
   }
   if (margin <= close && excuse != nullptr) {
-    diagnosis.sentence += " An error of one apparatus would explain the data as well: " +
-                          describe(*excuse) + ".";
+    diagnosis.sentence +=
+        " An error of one apparatus would explain the data as well: " + describe(*excuse) + ".";
   }
 }
 
@@ -139,16 +142,15 @@ bool wants_pairs(const Diagnosis& diagnosis) {
 
 void weigh(EffectFinding& finding, double information, std::size_t effects) {
   const double deviation = 1.0 / std::sqrt(information);
-  const double quantile =
-      Eigen::numext::ndtri(1.0 - alpha_named / static_cast<double>(std::max<std::size_t>(effects, 1)));
+  const double quantile = Eigen::numext::ndtri(
+      1.0 - alpha_named / static_cast<double>(std::max<std::size_t>(effects, 1)));
   constexpr double power = 0.84;  // 80 % point of a normal
   finding.detectable = (quantile + power) * deviation;
   finding.strength_upper = std::max(0.0, std::abs(finding.strength) + one_sided * deviation);
   if (finding.p < 0.05) {
     finding.status = EffectStatus::supported;
   } else {
-    finding.status =
-        finding.detectable > 1.0 ? EffectStatus::not_testable : EffectStatus::excluded;
+    finding.status = finding.detectable > 1.0 ? EffectStatus::not_testable : EffectStatus::excluded;
   }
 }
 
@@ -181,8 +183,9 @@ void conclude(const Calibration& calibration, Diagnosis& diagnosis) {
     }
   }
   if (calibration.free.empty()) {
-    diagnosis.remarks.emplace_back("No parameter is free: a wrong fixed value looks like a missing "
-                                   "effect.");
+    diagnosis.remarks.emplace_back(
+        "No parameter is free: a wrong fixed value looks like a missing "
+        "effect.");
   }
   if (adequate(diagnosis)) return conclude_adequate(diagnosis);
   const Excuse* excuse = diagnosis.excuses.empty() ? nullptr : &diagnosis.excuses.front();

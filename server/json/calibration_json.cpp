@@ -138,6 +138,7 @@ Json print_measurement(const Measurement& measurement) {
   entry["value"] = print_value(measurement.value, measurement.unit);
   entry["unit"] = measurement.unit.symbol;
   entry["standard_error"] = print_value(measurement.standard_error, measurement.unit);
+  if (measurement.replicates > 0) entry["replicates"] = measurement.replicates;
   if (measurement.allowance != 0.0) {
     entry["allowance"] = print_value(measurement.allowance, measurement.unit);
   }

@@ -260,9 +260,8 @@ inline calibrator::Evaluator evaluator(const Problem& problem) {
         if (observable.kind == "reb" && on.contains("shape")) {
           scatter *= 3.0 * std::min(on["shape"], 1.0);  // tumbling grains rebound anyhow
         }
-        seen.push_back({name,
-                        response(u, on, name, trial.experiment.settings) +
-                            scatter * random.normal()});
+        seen.push_back(
+            {name, response(u, on, name, trial.experiment.settings) + scatter * random.normal()});
       }
       evaluation.outcome = std::move(seen);
       evaluations.push_back(std::move(evaluation));
@@ -274,11 +273,11 @@ inline calibrator::Evaluator evaluator(const Problem& problem) {
 
 struct Settings {
   std::vector<Reading> readings = full_study();
-  double code_spread = 0.0;    ///< of the code that made the data
-  double tolerance = 0.0;      ///< that the diagnosis is told
-  int replicates = 0;          ///< behind each standard error; 0: it is known
+  double code_spread = 0.0;     ///< of the code that made the data
+  double tolerance = 0.0;       ///< that the diagnosis is told
+  int replicates = 0;           ///< behind each standard error; 0: it is known
   bool told_replicates = true;  ///< whether the diagnosis is told how many
-  double noise = 1.0;          ///< of the measurements, over the usual
+  double noise = 1.0;           ///< of the measurements, over the usual
 };
 
 /// Errors of one rig share 0.4 of their size.
@@ -299,7 +298,9 @@ inline Eigen::MatrixXd measurement_covariance(const std::vector<Reading>& readin
 
 /// Draws the truth from the middle of the box, measures it, and calibrates: 80 runs over the box,
 /// 64 around the best.
-inline Problem make_problem(std::uint64_t seed, const Hidden& hidden, const Settings& settings = {}) {
+inline Problem make_problem(std::uint64_t seed,
+                            const Hidden& hidden,
+                            const Settings& settings = {}) {
   Problem problem;
   problem.hidden = hidden;
   engine::Random random(seed, engine::Purpose::trial);
@@ -317,8 +318,7 @@ inline Problem make_problem(std::uint64_t seed, const Hidden& hidden, const Sett
   const Eigen::VectorXd noise = root * white;
   const OtherCode code{settings.code_spread, seed};
   problem.covariance = covariance;
-  problem.freedom =
-      Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
+  problem.freedom = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
   for (Eigen::Index j = 0; j < n; ++j) {
     const Reading& reading = readings[static_cast<std::size_t>(j)];
     calibrator::Measurement m;
@@ -344,17 +344,16 @@ inline Problem make_problem(std::uint64_t seed, const Hidden& hidden, const Sett
     for (Eigen::Index j = 0; j < n; ++j) {
       const std::string& a = readings[static_cast<std::size_t>(i)].observable;
       if (a != readings[static_cast<std::size_t>(j)].observable) continue;
-      problem.covariance(i, j) +=
-          settings.tolerance * settings.tolerance * (i == j ? 1.0 : 0.95);
+      problem.covariance(i, j) += settings.tolerance * settings.tolerance * (i == j ? 1.0 : 0.95);
     }
   }
   for (const std::string_view effect : effects) {
-    problem.suspects.push_back(
-        {.name = std::string(effect),
-         .title = std::string(effect),
-         .levers = {{.key = strength(effect), .lower = -calibrator::largest_strength,
-                     .upper = calibrator::largest_strength}},
-         .two_sided = effect == "wall"});
+    problem.suspects.push_back({.name = std::string(effect),
+                                .title = std::string(effect),
+                                .levers = {{.key = strength(effect),
+                                            .lower = -calibrator::largest_strength,
+                                            .upper = calibrator::largest_strength}},
+                                .two_sided = effect == "wall"});
   }
   // The calibration: a design over the box, then two around the set that explains most.
   const calibrator::Evaluator ask = evaluator(problem);
