@@ -36,6 +36,34 @@ struct Tie {
   bool operator==(const Tie&) const = default;
 };
 
+/// What proposes the parameter sets: ours, or one of the baselines (calibrator/baselines/) that it
+/// is compared with.
+enum class Method : std::uint8_t {
+  repose,
+  bobyqa,
+  cobyla,
+  sbplx,
+  crs2,
+  isres,
+  direct_l,
+  mlsl,
+  cma_es,
+  filter,
+};
+
+inline constexpr std::array<std::string_view, 10> method_names{
+    "repose",
+    "bobyqa",
+    "cobyla",
+    "sbplx",
+    "crs2",
+    "isres",
+    "direct_l",
+    "mlsl",
+    "cma_es",
+    "filter",
+};
+
 /// What may be spent. One evaluation is every experiment of the study at one parameter set with one
 /// seed.
 struct Budget {
@@ -46,6 +74,7 @@ struct Budget {
   /// Fidelity of the runs that confirm the best set. Where it differs from `fidelity`, the offset
   /// between the two is learnt from paired runs and carried by every prediction.
   engine::Fidelity confirm_fidelity = engine::Fidelity::standard;
+  Method method = Method::repose;
 
   bool operator==(const Budget&) const = default;
 };

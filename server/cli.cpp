@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "calibrator/calibration.hpp"
 #include "db/store.hpp"
 #include "engine/any_machine.hpp"
 #include "engine/catalogue.hpp"
@@ -203,9 +204,32 @@ void add_serve(CLI::App& app, ServeCommand& options, Work& work) {
   });
 }
 
-void add_bench(CLI::App& app, BenchCommand& options, Work& work) {
-  CLI::App& bench = *app.add_subcommand("bench", "Measure how fast this machine is");
+void add_bench_calibrator(CLI::App& bench, BenchCalibratorCommand& options, Work& work) {
+  CLI::App& command = *bench.add_subcommand(
+      "calibrator", "Evaluations that each method needs where the truth is known");
+  command.add_option("--case", options.cases, "Which (default: all)")
+      ->check(CLI::IsMember(options.cases))
+      ->expected(1)
+      ->take_all();
+  command.add_option("--seeds", options.seeds, "Studies of each case")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  options.methods.assign(calibrator::method_names.begin(), calibrator::method_names.end());
+  command.add_option("--methods", options.methods, "Which, with commas between (default: all)")
+      ->check(CLI::IsMember(options.methods))
+      ->delimiter(',')
+      ->take_all();
+  add_json(command, options.form, "JSON on standard output");
+  command.callback([&] { work = [&] { return bench_calibrator_command(options); }; });
+}
+
+void add_bench(CLI::App& app,
+               BenchCommand& options,
+               BenchCalibratorCommand& calibrator,
+               Work& work) {
+  CLI::App& bench = *app.add_subcommand("bench", "Measure the engine's speed and the calibrator's");
   bench.require_subcommand(1);
+  add_bench_calibrator(bench, calibrator, work);
   CLI::App& command = *bench.add_subcommand("engine", "The engine, on beds of the reference grain");
   command.add_option("--scene", options.scenes, "Which (default: all)")
       ->check(CLI::IsMember(options.scenes))
@@ -274,6 +298,7 @@ struct Commands {
   ShowCommand show;
   ServeCommand serve;
   BenchCommand bench;
+  BenchCalibratorCommand bench_calibrator;
   MaterialsCommand materials;
   Form catalogue_form = Form::json;
   SchemaCommand schema;
@@ -313,7 +338,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_serve(app, commands.serve, work);
   add_list(app, commands.list, work);
   add_show(app, commands.show, work);
-  add_bench(app, commands.bench, work);
+  add_bench(app, commands.bench, commands.bench_calibrator, work);
   add_materials(app, commands.materials, work);
   add_catalogue(app, commands.catalogue_form, commands.schema, work);
   CLI::App& answer = *app.add_subcommand("answer", "Answer one trial from standard input");

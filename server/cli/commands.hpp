@@ -84,6 +84,14 @@ struct BenchCommand {
 };
 int bench_engine_command(const BenchCommand& command);
 
+struct BenchCalibratorCommand {
+  std::vector<std::string> cases{"A", "B", "C", "D", "E"};
+  int seeds = 20;
+  std::vector<std::string> methods;
+  Form form = Form::text;
+};
+int bench_calibrator_command(const BenchCalibratorCommand& command);
+
 struct MaterialsCommand {
   std::string name;    ///< empty: all are listed
   bool study = false;  ///< print a study to start from

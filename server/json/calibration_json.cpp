@@ -32,6 +32,7 @@ void read_budget(const Place& place, calibrator::Budget& budget) {
   const Place batch = members.optional("batch");
   const Place fidelity = members.optional("fidelity");
   const Place confirm_fidelity = members.optional("confirm_fidelity");
+  const Place method = members.optional("method");
   members.no_others();
   const auto read_count = [](const Place& count, int& into, std::int64_t most) {
     if (!count.exists()) return;
@@ -43,6 +44,9 @@ void read_budget(const Place& place, calibrator::Budget& budget) {
   read_fidelity(fidelity, budget.fidelity);
   budget.confirm_fidelity = budget.fidelity;  // what is searched is what is confirmed, unless said
   read_fidelity(confirm_fidelity, budget.confirm_fidelity);
+  if (!method.exists()) return;
+  const auto index = method.one_of(calibrator::method_names, "method");
+  if (index) budget.method = static_cast<calibrator::Method>(*index);
 }
 
 void read_suspects(const Place& place, std::vector<std::string>& suspects) {
@@ -151,10 +155,14 @@ Json print_budget(const calibrator::Budget& budget) {
   const auto name = [](engine::Fidelity fidelity) {
     return engine::fidelity_names[static_cast<std::size_t>(fidelity)];
   };
-  return {{"evaluations", budget.evaluations},
-          {"batch", budget.batch},
-          {"fidelity", name(budget.fidelity)},
-          {"confirm_fidelity", name(budget.confirm_fidelity)}};
+  Json result{{"evaluations", budget.evaluations},
+              {"batch", budget.batch},
+              {"fidelity", name(budget.fidelity)},
+              {"confirm_fidelity", name(budget.confirm_fidelity)}};
+  if (budget.method != calibrator::Method::repose) {
+    result["method"] = calibrator::method_names[static_cast<std::size_t>(budget.method)];
+  }
+  return result;
 }
 
 }  // namespace
