@@ -87,6 +87,7 @@ std::vector<engine::Trial> replicate_trials(const engine::ParameterSet& paramete
                                             int replicates,
                                             std::uint64_t first_seed) {
   std::vector<engine::Trial> trials;
+  trials.reserve(static_cast<std::size_t>(replicates));
   for (int i = 0; i < replicates; ++i) {
     trials.push_back({parameters, experiment, first_seed + static_cast<std::uint64_t>(i)});
   }
