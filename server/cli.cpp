@@ -48,9 +48,13 @@ constexpr const char* calibrate_footer =
     "Ctrl-C stops; the same command takes the calibration up where it was. Progress goes to\n"
     "standard error: a display that renews itself on a terminal, a line a batch elsewhere.";
 
+constexpr const char* study_footer =
+    "Every finished evaluation is kept in the database: the same command goes on where an\n"
+    "interrupted one was, and prints again what is complete without simulating.";
+
 CLI::Option* add_database(CLI::App& command, std::filesystem::path& database) {
   return command
-      .add_option("--db",
+      .add_option("--db,--database",
                   database,
                   "Database file (default: $REPOSE_DB, else repose/repose.db in "
                   "$XDG_DATA_HOME or ~/.local/share)")
@@ -261,6 +265,26 @@ void add_bench(CLI::App& app,
   command.callback([&] { work = [&] { return bench_engine_command(options); }; });
 }
 
+void add_study(CLI::App& app, StudyCommand& options, Work& work) {
+  CLI::App& command = *app.add_subcommand("study", "Run a published simulation study again");
+  command.add_option("name", options.name, "Which: boac2010")->required();
+  command.add_flag("--quick", options.quick, "Draft fidelity, few replicates");
+  command.add_option("--output", options.output, "Folder for the JSON file and the HTML report")
+      ->type_name("FOLDER")
+      ->default_str("the working folder");
+  add_database(command, options.database);
+  command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
+      ->check(CLI::Range(1, 4096));
+  add_json(command, options.form, "The result on standard output");
+  command.footer(study_footer);
+  command.callback([&] {
+    work = [&] {
+      if (options.database.empty()) options.database = default_database();
+      return study_command(options);
+    };
+  });
+}
+
 void add_catalogue(CLI::App& app, Form& form, SchemaCommand& options, Work& work) {
   CLI::App& catalogue =
       *app.add_subcommand("catalogue", "Print every effect, experiment and material property");
@@ -300,6 +324,7 @@ struct Commands {
   BenchCommand bench;
   BenchCalibratorCommand bench_calibrator;
   MaterialsCommand materials;
+  StudyCommand study;
   Form catalogue_form = Form::json;
   SchemaCommand schema;
 };
@@ -340,6 +365,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_show(app, commands.show, work);
   add_bench(app, commands.bench, commands.bench_calibrator, work);
   add_materials(app, commands.materials, work);
+  add_study(app, commands.study, work);
   add_catalogue(app, commands.catalogue_form, commands.schema, work);
   CLI::App& answer = *app.add_subcommand("answer", "Answer one trial from standard input");
   answer.group("");  // hidden: for the worker pool

@@ -99,6 +99,16 @@ struct MaterialsCommand {
 };
 int materials_command(const MaterialsCommand& command);
 
+struct StudyCommand {
+  std::string name;
+  bool quick = false;            ///< draft fidelity, few replicates
+  std::filesystem::path output;  ///< folder for NAME.json and NAME.html
+  std::filesystem::path database;
+  unsigned workers = 0;
+  Form form = Form::text;
+};
+int study_command(const StudyCommand& command);
+
 int catalogue_command(Form form);
 
 struct SchemaCommand {
