@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -26,12 +27,13 @@ class Search {
   Search(const Calibration& calibration,
          const Evaluator& evaluator,
          const std::stop_token& stop,
-         const ProgressObserver& observer)
+         const ProgressObserver& observer,
+         std::span<const KnownRun> known)
       : calibration_(calibration),
         plan_(make_plan(calibration)),
         stop_(stop),
         observer_(observer),
-        ledger_(calibration, evaluator) {}
+        ledger_(calibration, evaluator, known) {}
 
   Fit run();
 
@@ -39,6 +41,7 @@ class Search {
   using Requests = std::vector<Ledger::Request>;
 
   Fit run_baseline();
+  [[nodiscard]] bool knows_enough() const;
   bool start();
   void replicate();
   void pair();
@@ -135,8 +138,25 @@ Fit Search::run_baseline() {
   return finish(converged ? StopReason::converged : StopReason::budget);
 }
 
+/// Whether known runs tell enough of every free parameter to begin with: none of them stays at one
+/// value in all but a few.
+bool Search::knows_enough() const {
+  for (std::size_t k = 0; k < calibration_.free.size(); ++k) {
+    std::map<double, int> sites;
+    int all = 0, commonest = 0;
+    for (const Site& site : ledger_.sites()) {
+      if (!std::ranges::any_of(site.searched, &SiteRun::succeeded)) continue;
+      ++all;
+      commonest = std::max(commonest, ++sites[site.at[k]]);
+    }
+    if (all - commonest < plan_.least) return false;
+  }
+  return !ledger_.sites().empty();
+}
+
 /// Space-filling points; a second set where too many of the first failed. False if still too few.
 bool Search::start() {
+  if (knows_enough()) return true;
   for (std::uint64_t attempt = 0; attempt < 2 && !stop_.stop_requested(); ++attempt) {
     if (plan_.total() - plan_.start > ledger_.remaining() - plan_.start) break;
     Requests requests;
@@ -166,6 +186,8 @@ void Search::replicate() {
     }
   }
   Requests requests;
+  const std::vector<int> freedom = ledger_.scatter(Level::search).freedom;
+  if (*std::ranges::min_element(freedom) >= plan_.replicates) return;  // the scatter is known
   const int first = ledger_.fresh_replicate(base_);
   for (int r = 0; r < plan_.replicates; ++r) requests.push_back({base_, first + r, Level::search});
   ledger_.run("replicate", requests);
@@ -345,8 +367,9 @@ Fit Search::finish(StopReason reason) {
 Fit calibrate(const Calibration& calibration,
               const Evaluator& evaluator,
               std::stop_token stop,  // NOLINT(performance-unnecessary-value-param): as declared
-              const ProgressObserver& observer) {
-  return Search(calibration, evaluator, stop, observer).run();
+              const ProgressObserver& observer,
+              std::span<const KnownRun> known) {
+  return Search(calibration, evaluator, stop, observer, known).run();
 }
 
 }  // namespace repose::calibrator

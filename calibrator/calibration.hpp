@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -79,6 +80,15 @@ struct Budget {
   bool operator==(const Budget&) const = default;
 };
 
+/// Where a calibration comes from that adds an effect to another's model.
+struct Extension {
+  std::int64_t calibration = 0;           ///< the one it extends
+  std::optional<std::int64_t> diagnosis;  ///< whose runs it starts from too
+  std::string effect;                     ///< that is added
+
+  bool operator==(const Extension&) const = default;
+};
+
 struct Calibration {
   std::string name;
   engine::ParameterSet fixed;  ///< materials' properties and fixed parameters
@@ -88,6 +98,7 @@ struct Calibration {
   std::vector<std::string> suspects;  ///< effects to be weighed by the diagnosis
   Budget budget;
   std::uint64_t seed = 1;
+  std::optional<Extension> extends = {};
 
   bool operator==(const Calibration&) const = default;
 };

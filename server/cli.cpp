@@ -141,6 +141,49 @@ void add_calibrate(CLI::App& app, CalibrateCommand& options, Work& work) {
   });
 }
 
+void add_missing_effect(CLI::App& app, MissingEffectCommand& options, Work& work) {
+  const auto add =
+      [&](const char* name, const char* what, int (*run)(const MissingEffectCommand&)) {
+        CLI::App& command = *app.add_subcommand(name, what);
+        command.add_option("id", options.id, "Calibration")->required();
+        add_database(command, options.database);
+        add_json(command, options.form, "One JSON object on standard output");
+        command.callback([&, run] {
+          work = [&, run] {
+            if (options.database.empty()) options.database = default_database();
+            return run(options);
+          };
+        });
+        return &command;
+      };
+  const auto add_tolerance = [&](CLI::App& command) {
+    command
+        .add_option("--tolerance",
+                    options.tolerances,
+                    "How closely codes agree on an observable, in place of the catalogue's share")
+        ->type_name("EXPERIMENT.OBSERVABLE=SHARE")
+        ->expected(1)
+        ->take_all();
+  };
+  const auto add_workers = [&](CLI::App& command) {
+    command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
+        ->check(CLI::Range(1, 4096));
+  };
+  add_tolerance(
+      *add("compare", "Where a calibrated model misses its measurements", compare_command));
+  CLI::App& diagnose =
+      *add("diagnose", "Which physical effect a calibrated model lacks", diagnose_command);
+  add_tolerance(diagnose);
+  add_workers(diagnose);
+  CLI::App& extend = *add("extend", "Add an effect to a model and calibrate it", extend_command);
+  extend.add_option("--effect", options.effect, "Which; `repose diagnose` names them")->required();
+  add_workers(extend);
+  extend.add_option("--report", options.report, "Report (default: beside the database)")
+      ->type_name("FILE");
+  extend.add_flag_callback(
+      "--no-pictures", [&options] { options.pictures = false; }, "No pictures in the report");
+}
+
 void add_report(CLI::App& app, ReportCommand& options, Work& work) {
   CLI::App& command = *app.add_subcommand("report", "Write the HTML report of a calibration");
   command.add_option("id", options.id, "Calibration")->required();
@@ -317,6 +360,7 @@ void add_materials(CLI::App& app, MaterialsCommand& options, Work& work) {
 struct Commands {
   EvaluateCommand evaluate;
   CalibrateCommand calibrate;
+  MissingEffectCommand missing_effect;
   ReportCommand report;
   ListCommand list;
   ShowCommand show;
@@ -359,6 +403,7 @@ int run_command_line(int argc, const char* const* argv) {
   Work work;
   add_evaluate(app, commands.evaluate, work);
   add_calibrate(app, commands.calibrate, work);
+  add_missing_effect(app, commands.missing_effect, work);
   add_report(app, commands.report, work);
   add_serve(app, commands.serve, work);
   add_list(app, commands.list, work);

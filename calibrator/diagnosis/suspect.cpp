@@ -16,6 +16,8 @@ using engine::MaterialId;
 using engine::ParameterKey;
 using engine::ParameterSet;
 
+constexpr double most_strength = 1.3;  // beyond it an effect is no longer plausible
+
 std::string_view owner_of(const ParameterKey& key) {
   return std::string_view(key.field).substr(0, key.field.find('.'));
 }
@@ -108,6 +110,31 @@ double Suspect::snapped(double strength) const {
     }
   }
   return strength;
+}
+
+void extend(const Suspect& suspect, const ParameterSet& best, Calibration& calibration) {
+  for (const Lever& lever : suspect.levers) {
+    std::erase_if(calibration.tied, [&](const Tie& tie) { return tie.key == lever.key; });
+    calibration.fixed.erase(lever.key);
+    const engine::ParameterInfo* info = engine::find_parameter(lever.key.field);
+    const engine::Unit unit = info != nullptr ? info->field->unit : engine::Unit{};
+    const double none = lever.relative ? lever.value(best, -1.0) : lever.null_value;
+    const double most = lever.value(best, lever.whole ? 1.0 : most_strength);
+    // What no strength moves belongs to the effect, but not to the search.
+    if (none == most) {
+      calibration.fixed.set(lever.key, none);
+      continue;
+    }
+    const auto leader = std::ranges::find(calibration.free,
+                                          lever.key.field,
+                                          [](const FreeParameter& free) { return free.key.field; });
+    if (leader != calibration.free.end() && !lever.relative) {
+      calibration.tied.push_back({lever.key, leader->key, 1.0});
+      continue;
+    }
+    calibration.free.push_back(
+        {lever.key, std::min(none, most), std::max(none, most), Scale::linear, unit});
+  }
 }
 
 std::vector<Suspect> suspects_of(const Calibration& calibration, const ParameterSet& best) {

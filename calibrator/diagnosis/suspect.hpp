@@ -39,6 +39,10 @@ struct Suspect {
   [[nodiscard]] double snapped(double strength) const;
 };
 
+/// Frees the suspect's parameters from null in a calibration: those of the grains, the others tied
+/// to them.
+void extend(const Suspect& suspect, const engine::ParameterSet& best, Calibration& calibration);
+
 /// Every effect of the catalogue that the calibration left at null: those it names as suspects, or
 /// all. `best` gives the grains' size and stiffness.
 std::vector<Suspect> suspects_of(const Calibration& calibration, const engine::ParameterSet& best);

@@ -41,6 +41,23 @@ struct CalibrateCommand {
   Form form = Form::text;
 };
 int calibrate_command(const CalibrateCommand& command);
+/// The same with the study's text in hand.
+int calibrate_text(const CalibrateCommand& command, const std::string& study);
+
+/// Of a finished calibration: compare, diagnose, extend.
+struct MissingEffectCommand {
+  std::int64_t id = 0;
+  std::filesystem::path database;
+  std::vector<std::string> tolerances;  ///< EXPERIMENT.OBSERVABLE=SHARE
+  unsigned workers = 0;
+  std::string effect;            ///< to extend by
+  std::filesystem::path report;  ///< of the extended one
+  bool pictures = true;
+  Form form = Form::text;
+};
+int compare_command(const MissingEffectCommand& command);
+int diagnose_command(const MissingEffectCommand& command);
+int extend_command(const MissingEffectCommand& command);
 
 struct ReportCommand {
   std::int64_t id = 0;

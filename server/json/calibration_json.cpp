@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -63,6 +64,24 @@ void read_suspects(const Place& place, std::vector<std::string>& suspects) {
       element.complain("this effect is named twice", "each effect once");
     }
   }
+}
+
+void read_extends(const Place& place, std::optional<calibrator::Extension>& extends) {
+  if (!place.exists()) return;
+  Members members(place);
+  const Place calibration = members.required("calibration", "the number of a calibration");
+  const Place diagnosis = members.optional("diagnosis");
+  const Place effect = members.required("effect", "the name of the effect that is added");
+  members.no_others();
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  calibrator::Extension read;
+  const auto id = calibration.exists() ? calibration.whole(1, most) : std::nullopt;
+  if (diagnosis.exists()) read.diagnosis = diagnosis.whole(1, most);
+  auto name = effect.exists() ? effect.text(200) : std::nullopt;
+  if (!id || !name) return;
+  read.calibration = *id;
+  read.effect = *std::move(name);
+  extends = std::move(read);
 }
 
 void read_name(const Place& place, std::string& name) {
@@ -187,6 +206,7 @@ engine::Result<Calibration, Problems> parse_calibration(std::string_view text) {
   read_measurements(members.optional("measurements"), study);
   read_suspects(members.optional("suspects"), calibration.suspects);
   read_budget(members.optional("budget"), calibration.budget);
+  read_extends(members.optional("extends"), calibration.extends);
   const Place seed = members.optional("seed");
   if (seed.exists()) calibration.seed = seed.seed().value_or(1);
   members.no_others();
@@ -208,6 +228,11 @@ std::string print_calibration(const Calibration& calibration) {
     document["measurements"].push_back(print_measurement(measurement));
   }
   if (!calibration.suspects.empty()) document["suspects"] = calibration.suspects;
+  if (calibration.extends) {
+    Json& extends = document["extends"] = {{"calibration", calibration.extends->calibration},
+                                           {"effect", calibration.extends->effect}};
+    if (calibration.extends->diagnosis) extends["diagnosis"] = *calibration.extends->diagnosis;
+  }
   document["budget"] = print_budget(calibration.budget);
   document["seed"] = calibration.seed;
   return to_text(document, 2);
