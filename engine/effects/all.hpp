@@ -3,6 +3,7 @@
 
 #include <tuple>
 
+#include "engine/effects/area_cohesion.hpp"
 #include "engine/effects/elastic_rolling_resistance.hpp"
 #include "engine/effects/grain_shape.hpp"
 #include "engine/effects/log_normal_sizes.hpp"
@@ -20,6 +21,7 @@ using AllEffects = std::tuple<effects::SizeSpread,
                               effects::TabulatedSizes,
                               effects::GrainShape,
                               effects::Restitution,
+                              effects::AreaCohesion,
                               effects::SlidingFriction,
                               effects::RollingResistance,
                               effects::ElasticRollingResistance,

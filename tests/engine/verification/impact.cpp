@@ -20,13 +20,15 @@ World before(const Impact& impact) {
   const GrainLaw& law = impact.law;
   GrainRow a = sphere(0.5 * law.diameter, law.density);
   GrainRow b = sphere(impact.size_ratio * a.radius, impact.density_ratio * law.density);
-  const ContactModel model(parameters(law));
+  ParameterSet set = parameters(law);
+  for (const auto& [key, value] : impact.effects) set.set(key, value);
+  const ContactModel model(set);
   const double modulus =
       model.law(impact.wall ? MaterialId::wall : MaterialId::grain).elastic.modulus;
   const double mass_of_pair = impact.wall ? mass(a) : 1.0 / (a.inverse_mass + b.inverse_mass);
   const double radius = impact.wall ? a.radius : a.radius * b.radius / (a.radius + b.radius);
-  World world =
-      weightless(law, impact_time(mass_of_pair, radius, modulus, impact.normal) / impact.steps);
+  const double whole = impact_time(mass_of_pair, radius, modulus, impact.normal);
+  World world(model, {.time_step = whole / impact.steps, .period = {}, .gravity = {}});
   const bool equal = !impact.wall && impact.size_ratio == 1.0;
   constexpr double gap = 1.0 + 1e-9;
   a.z = a.radius * gap;

@@ -6,11 +6,12 @@
 namespace repose::tests {
 
 struct Impact {
-  GrainLaw law;             ///< its diameter is that of the sphere
-  bool wall = true;         ///< against a plane; else against a sphere
-  double normal = 0.0;      ///< speed of approach of the pair, m/s
-  double tangential = 0.0;  ///< velocity of the sphere along x, m/s
-  double spin = 0.0;        ///< of the sphere about y, rad/s
+  GrainLaw law;                       ///< its diameter is that of the sphere
+  engine::ParameterSet effects = {};  ///< parameters besides the law's
+  bool wall = true;                   ///< against a plane; else against a sphere
+  double normal = 0.0;                ///< speed of approach of the pair, m/s
+  double tangential = 0.0;            ///< velocity of the sphere along x, m/s
+  double spin = 0.0;                  ///< of the sphere about y, rad/s
   double partner_spin = 0.0;
   double size_ratio = 1.0;     ///< radius of the other sphere over that of the sphere
   double density_ratio = 1.0;  ///< the same for density
