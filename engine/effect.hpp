@@ -14,6 +14,7 @@
 /// At the null value of all its parameters an effect is exactly absent.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <span>
@@ -64,6 +65,18 @@ struct GrainScale {
   double radius;        ///< m
   double density;       ///< kg/m3
   PairElastic elastic;  ///< of grain on grain
+
+  /// N
+  [[nodiscard]] double weight() const {
+    constexpr double volume = 4.0 / 3.0 * unit::pi, gravity = 9.81;
+    return volume * radius * radius * radius * density * gravity;
+  }
+
+  /// Of two grains pressed together by the weight of one (Hertz; R* = R / 2), m.
+  [[nodiscard]] double overlap() const {
+    const double force = 0.75 * weight() / elastic.modulus;
+    return std::cbrt(2.0 * force * force / radius);
+  }
 };
 
 /// A catalogue entry: made from the effect's file, read by everyone else.
