@@ -3,75 +3,45 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
+#include "calibrator/answer.hpp"
+#include "calibrator/baselines/baseline.hpp"
 #include "calibrator/design.hpp"
 #include "calibrator/ledger.hpp"
 #include "calibrator/misfit.hpp"
 #include "calibrator/offset.hpp"
+#include "calibrator/plan.hpp"
 #include "calibrator/proposal.hpp"
 #include "calibrator/remarks.hpp"
 #include "calibrator/stopping.hpp"
 #include "calibrator/surrogate.hpp"
-#include "calibrator/uncertainty.hpp"
 
 namespace repose::calibrator {
 namespace {
-
-/// How the budget is split before anything is known.
-struct Plan {
-  int start = 0;       ///< space-filling points
-  int least = 0;       ///< of these that must succeed
-  int replicates = 4;  ///< at the best of them
-  int pairs = 0;       ///< of these repeated at the confirming fidelity
-  int confirm = 4;     ///< fresh replicates of the recommended point, at the least
-  bool affordable = true;
-
-  [[nodiscard]] int total() const { return start + replicates + pairs + confirm; }
-};
-
-Plan make_plan(const Calibration& calibration) {
-  const int d = static_cast<int>(calibration.free.size());
-  const Budget& budget = calibration.budget;
-  Plan plan;
-  plan.least = d == 0 ? 1 : d + 2;
-  plan.start = d == 0 ? 1 : std::max({2 * d, budget.batch, plan.least});
-  plan.pairs = budget.fidelity == budget.confirm_fidelity ? 0 : plan.replicates;
-  // What is given up first when the budget is short: points of the start, then repetitions.
-  plan.start = std::max(plan.least, plan.start - std::max(0, plan.total() - budget.evaluations));
-  if (plan.total() > budget.evaluations) {
-    plan.replicates = plan.confirm = 2;
-    plan.pairs = std::min(plan.pairs, 2);
-  }
-  plan.affordable = plan.total() <= budget.evaluations;
-  return plan;
-}
-
-/// The recommended point as fresh replicates found it, and what had been promised.
-struct Confirmation {
-  std::size_t site = 0;
-  std::vector<SiteRun> runs;
-  std::vector<Belief> promised;  ///< SI, at the confirming fidelity
-};
 
 class Search {
  public:
   Search(const Calibration& calibration,
          const Evaluator& evaluator,
          const std::stop_token& stop,
-         const ProgressObserver& observer)
+         const ProgressObserver& observer,
+         std::span<const KnownRun> known)
       : calibration_(calibration),
         plan_(make_plan(calibration)),
         stop_(stop),
         observer_(observer),
-        ledger_(calibration, evaluator) {}
+        ledger_(calibration, evaluator, known) {}
 
   Fit run();
 
  private:
   using Requests = std::vector<Ledger::Request>;
 
+  Fit run_baseline();
+  [[nodiscard]] bool knows_enough() const;
   bool start();
   void replicate();
   void pair();
@@ -79,16 +49,14 @@ class Search {
   void search(int count);
   bool confirm();
   [[nodiscard]] std::optional<StopReason> verdict();
-  [[nodiscard]] bool promise_kept() const;
   [[nodiscard]] int reserve() const;
   [[nodiscard]] Outlook outlook() const { return {ledger_, *surrogate_, targets_}; }
   [[nodiscard]] std::vector<Belief> predict(const UnitPoint& point) const;
   void complete_history();
   void report(std::string_view stage) const;
+  void report_baseline(const BaselineSearch& search);
+  [[nodiscard]] bool by_baseline() const;
   Fit finish(StopReason reason);
-  Fit fail(std::string remark);
-  void fill_predictions(Fit& fit) const;
-  void fill_parameters(Fit& fit, const UnitPoint& best) const;
 
   const Calibration& calibration_;
   Plan plan_;
@@ -115,12 +83,13 @@ int succeeded(const Ledger& ledger) {
 
 Fit Search::run() {
   if (std::ranges::count(calibration_.measurements, Role::fit, &Measurement::role) == 0) {
-    return fail("There is no measurement to fit.");
+    return failure(ledger_, "There is no measurement to fit.");
   }
-  if (!plan_.affordable) return fail(budget_too_small(calibration_, plan_.total()));
+  if (!plan_.affordable) return failure(ledger_, budget_too_small(calibration_, plan_.total()));
+  if (by_baseline()) return run_baseline();
   if (!start()) {
     if (stop_.stop_requested()) return finish(StopReason::cancelled);
-    return fail(too_few_succeeded(ledger_, succeeded(ledger_), plan_.least));
+    return failure(ledger_, too_few_succeeded(ledger_, succeeded(ledger_), plan_.least));
   }
   if (!stop_.stop_requested()) replicate();
   if (!stop_.stop_requested()) pair();
@@ -129,7 +98,8 @@ Fit Search::run() {
   while (!stop_.stop_requested()) {
     if (const auto reason = verdict()) {
       if (confirm()) return finish(StopReason::hit);
-      if (*reason != StopReason::hit && promise_kept()) return finish(*reason);
+      if (*reason != StopReason::hit && promise_kept(outlook(), *confirmation_))
+        return finish(*reason);
       if (ledger_.remaining() <= reserve()) return finish(StopReason::budget);
       learn();  // what was confirmed is evidence like any other
     }
@@ -142,8 +112,51 @@ Fit Search::run() {
   return finish(StopReason::cancelled);
 }
 
+/// A study of fixed parameters has nothing to search, whatever the method.
+bool Search::by_baseline() const {
+  return calibration_.budget.method != Method::repose && !calibration_.free.empty();
+}
+
+/// What the baseline recommends is confirmed by fresh replicates; the emulator then learns from all
+/// its runs what the answer says beyond the best set.
+Fit Search::run_baseline() {
+  BaselineSearch search(
+      ledger_, plan_.confirm, stop_, [this](const BaselineSearch& now) { report_baseline(now); });
+  const bool converged = search_by_baseline(search, calibration_.budget.method);
+  recommended_ = search.recommended();
+  if (stop_.stop_requested()) {
+    Fit fit = finish(StopReason::cancelled);
+    fit.best = ledger_.space().at(recommended_);
+    return fit;
+  }
+  if (succeeded(ledger_) < plan_.least) {
+    return failure(ledger_, too_few_succeeded(ledger_, succeeded(ledger_), plan_.least));
+  }
+  base_ = ledger_.site_at(recommended_);
+  learn();
+  if (confirm()) return finish(StopReason::hit);
+  return finish(converged ? StopReason::converged : StopReason::budget);
+}
+
+/// Whether known runs tell enough of every free parameter to begin with: none of them stays at one
+/// value in all but a few.
+bool Search::knows_enough() const {
+  for (std::size_t k = 0; k < calibration_.free.size(); ++k) {
+    std::map<double, int> sites;
+    int all = 0, commonest = 0;
+    for (const Site& site : ledger_.sites()) {
+      if (!std::ranges::any_of(site.searched, &SiteRun::succeeded)) continue;
+      ++all;
+      commonest = std::max(commonest, ++sites[site.at[k]]);
+    }
+    if (all - commonest < plan_.least) return false;
+  }
+  return !ledger_.sites().empty();
+}
+
 /// Space-filling points; a second set where too many of the first failed. False if still too few.
 bool Search::start() {
+  if (knows_enough()) return true;
   for (std::uint64_t attempt = 0; attempt < 2 && !stop_.stop_requested(); ++attempt) {
     if (plan_.total() - plan_.start > ledger_.remaining() - plan_.start) break;
     Requests requests;
@@ -173,6 +186,8 @@ void Search::replicate() {
     }
   }
   Requests requests;
+  const std::vector<int> freedom = ledger_.scatter(Level::search).freedom;
+  if (*std::ranges::min_element(freedom) >= plan_.replicates) return;  // the scatter is known
   const int first = ledger_.fresh_replicate(base_);
   for (int r = 0; r < plan_.replicates; ++r) requests.push_back({base_, first + r, Level::search});
   ledger_.run("replicate", requests);
@@ -201,9 +216,11 @@ void Search::learn() {
     targets_.push_back(
         {j, measurement.value - offset_.value[j], sigma * sigma + offset_.variance[j]});
   }
-  std::vector<UnitPoint> starts;
-  if (!recommended_.empty()) starts.push_back(recommended_);
-  recommended_ = recommend(outlook(), starts);
+  if (!by_baseline()) {
+    std::vector<UnitPoint> starts;
+    if (!recommended_.empty()) starts.push_back(recommended_);
+    recommended_ = recommend(outlook(), starts);
+  }
   complete_history();
 }
 
@@ -222,12 +239,13 @@ void Search::search(int count) {
 
 /// Runs kept back for the confirmation.
 int Search::reserve() const {
+  if (by_baseline()) return plan_.confirm;
   return std::max(plan_.confirm, plan_.confirm < 4 ? 0 : confirming_replicates(ledger_));
 }
 
 /// Fresh replicates of the recommended point. True if they are a hit.
 bool Search::confirm() {
-  const UnitPoint point = settle(outlook(), recommended_);
+  const UnitPoint point = by_baseline() ? recommended_ : settle(outlook(), recommended_);
   Confirmation confirmation{ledger_.site_at(point), {}, predict(point)};
   Requests requests;
   const int first = ledger_.fresh_replicate(confirmation.site);
@@ -240,22 +258,6 @@ bool Search::confirm() {
   confirmation_ = std::move(confirmation);
   report("confirm");
   return is_hit(ledger_, confirmation_->runs);
-}
-
-/// Whether the fresh replicates are what the emulator had led to expect.
-bool Search::promise_kept() const {
-  const Scatter scatter = ledger_.scatter(Level::confirm);
-  for (const Target& target : targets_) {
-    const std::size_t j = target.measurement;
-    const RunMean runs = mean_of(confirmation_->runs, j);
-    if (runs.count == 0) return false;
-    const Belief& promised = confirmation_->promised[j];
-    const double variance =
-        promised.variance + run_variance(runs, scatter.variance[j]) / runs.count;
-    const double gap = runs.mean - promised.mean;
-    if (gap * gap > 9.0 * variance) return false;  // three standard deviations
-  }
-  return true;
 }
 
 /// A reason to stop searching, if the emulator sees one; it is to be confirmed.
@@ -317,22 +319,26 @@ void Search::report(std::string_view stage) const {
   observer_(progress);
 }
 
-Fit Search::fail(std::string remark) {
-  Fit fit;
-  fit.evaluations = ledger_.spent();
-  fit.failed = ledger_.failed();
-  fit.stop = StopReason::failed;
-  fit.history = ledger_.history();
-  fit.misfit = std::numeric_limits<double>::quiet_NaN();
-  fit.remarks.push_back(std::move(remark));
-  return fit;
+/// Without an emulator: the smallest misfit of a single run.
+void Search::report_baseline(const BaselineSearch& search) {
+  for (HistoryPoint& point : ledger_.history()) {
+    if (std::isnan(point.best)) point.best = search.smallest();
+  }
+  if (!observer_) return;
+  observer_({"search",
+             ledger_.spent(),
+             calibration_.budget.evaluations,
+             search.smallest(),
+             {},
+             {},
+             ledger_.space().at(search.recommended())});
 }
 
 Fit Search::finish(StopReason reason) {
   // Whatever was about to be concluded, runs that were cut short are no evidence of it.
   if (stop_.stop_requested() && reason != StopReason::hit) reason = StopReason::cancelled;
   if (!surrogate_) {
-    Fit fit = fail("The search was cancelled before anything was learnt.");
+    Fit fit = failure(ledger_, "The search was cancelled before anything was learnt.");
     fit.stop = reason;
     return fit;
   }
@@ -348,53 +354,12 @@ Fit Search::finish(StopReason reason) {
   fit.offset = offset_.value;
   for (const double variance : offset_.variance) fit.offset_error.push_back(std::sqrt(variance));
   if (!confirmation_) confirmation_ = Confirmation{0, {}, predict(best)};
-  fill_predictions(fit);
-  fill_parameters(fit, best);
+  fill_predictions(outlook(), *confirmation_, fit);
+  fill_parameters(outlook(), best, fit);
   fit.history = ledger_.history();
   fit.remarks = remarks(outlook(), fit);
   report("confirm");
   return fit;
-}
-
-void Search::fill_predictions(Fit& fit) const {
-  const Scatter scatter = ledger_.scatter(Level::confirm);
-  fit.misfit = 0.0;
-  for (std::size_t j = 0; j < calibration_.measurements.size(); ++j) {
-    const Measurement& measurement = calibration_.measurements[j];
-    const RunMean runs = mean_of(confirmation_->runs, j);
-    const Belief& promised = confirmation_->promised[j];
-    Prediction p;
-    p.measurement = j;
-    p.replicates = runs.count;
-    p.emulated = promised.mean;
-    p.emulated_deviation = std::sqrt(promised.variance);
-    p.scatter = std::sqrt(run_variance(runs, scatter.variance[j]));
-    // Without a confirming run the emulator's word is all there is.
-    p.predicted = runs.count > 0 ? runs.mean : promised.mean;
-    p.standard_error = runs.count > 0 ? p.scatter / std::sqrt(runs.count) : p.emulated_deviation;
-    p.z = (p.predicted - measurement.value) /
-          std::hypot(standard_uncertainty(measurement), p.standard_error);
-    if (measurement.role == Role::fit) fit.misfit += p.z * p.z;
-    fit.predictions.push_back(p);
-  }
-}
-
-void Search::fill_parameters(Fit& fit, const UnitPoint& best) const {
-  const std::vector<Interval> intervals = profile_intervals(outlook(), best);
-  Learnt learnt = learnt_directions(outlook(), best);
-  for (std::size_t k = 0; k < best.size(); ++k) {
-    const SearchSpace& space = ledger_.space();
-    const Interval& interval = intervals[k];
-    fit.parameters.push_back({calibration_.free[k].key,
-                              space.value(k, best[k]),
-                              space.value(k, interval.lower),
-                              space.value(k, interval.upper),
-                              interval.lower_at_bound,
-                              interval.upper_at_bound,
-                              learnt.share[k],
-                              !interval.lower_at_bound && !interval.upper_at_bound});
-  }
-  fit.directions = std::move(learnt.directions);
 }
 
 }  // namespace
@@ -402,8 +367,9 @@ void Search::fill_parameters(Fit& fit, const UnitPoint& best) const {
 Fit calibrate(const Calibration& calibration,
               const Evaluator& evaluator,
               std::stop_token stop,  // NOLINT(performance-unnecessary-value-param): as declared
-              const ProgressObserver& observer) {
-  return Search(calibration, evaluator, stop, observer).run();
+              const ProgressObserver& observer,
+              std::span<const KnownRun> known) {
+  return Search(calibration, evaluator, stop, observer, known).run();
 }
 
 }  // namespace repose::calibrator

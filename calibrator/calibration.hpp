@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,34 @@ struct Tie {
   bool operator==(const Tie&) const = default;
 };
 
+/// What proposes the parameter sets: ours, or one of the baselines (calibrator/baselines/) that it
+/// is compared with.
+enum class Method : std::uint8_t {
+  repose,
+  bobyqa,
+  cobyla,
+  sbplx,
+  crs2,
+  isres,
+  direct_l,
+  mlsl,
+  cma_es,
+  filter,
+};
+
+inline constexpr std::array<std::string_view, 10> method_names{
+    "repose",
+    "bobyqa",
+    "cobyla",
+    "sbplx",
+    "crs2",
+    "isres",
+    "direct_l",
+    "mlsl",
+    "cma_es",
+    "filter",
+};
+
 /// What may be spent. One evaluation is every experiment of the study at one parameter set with one
 /// seed.
 struct Budget {
@@ -46,8 +75,18 @@ struct Budget {
   /// Fidelity of the runs that confirm the best set. Where it differs from `fidelity`, the offset
   /// between the two is learnt from paired runs and carried by every prediction.
   engine::Fidelity confirm_fidelity = engine::Fidelity::standard;
+  Method method = Method::repose;
 
   bool operator==(const Budget&) const = default;
+};
+
+/// Where a calibration comes from that adds an effect to another's model.
+struct Extension {
+  std::int64_t calibration = 0;           ///< the one it extends
+  std::optional<std::int64_t> diagnosis;  ///< whose runs it starts from too
+  std::string effect;                     ///< that is added
+
+  bool operator==(const Extension&) const = default;
 };
 
 struct Calibration {
@@ -59,6 +98,7 @@ struct Calibration {
   std::vector<std::string> suspects;  ///< effects to be weighed by the diagnosis
   Budget budget;
   std::uint64_t seed = 1;
+  std::optional<Extension> extends = {};
 
   bool operator==(const Calibration&) const = default;
 };

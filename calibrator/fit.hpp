@@ -58,16 +58,18 @@ enum class StopReason : std::uint8_t {
   implausible,  ///< no parameter set comes within three standard errors: physics is missing
   budget,       ///< the evaluations are spent
   cancelled,
-  failed,  ///< too few evaluations succeeded to learn from
+  failed,     ///< too few evaluations succeeded to learn from
+  converged,  ///< a baseline had nothing more to try
 };
 
-inline constexpr std::array<std::string_view, 6> stop_reason_names{
+inline constexpr std::array<std::string_view, 7> stop_reason_names{
     "hit",
     "no_better",
     "implausible",
     "budget",
     "cancelled",
     "failed",
+    "converged",
 };
 
 struct Fit {

@@ -26,11 +26,23 @@ std::string describe(const engine::Trial& trial, engine::FailureKind kind) {
 
 }  // namespace
 
-Ledger::Ledger(const Calibration& calibration, const Evaluator& evaluator)
+Ledger::Ledger(const Calibration& calibration,
+               const Evaluator& evaluator,
+               std::span<const KnownRun> known)
     : calibration_(calibration),
       evaluator_(evaluator),
       space_(calibration),
-      suite_(calibration.measurements) {}
+      suite_(calibration.measurements) {
+  for (const KnownRun& run : known) {
+    const std::size_t site = site_at(space_.coordinates(run.parameters));
+    SiteRun made{fresh_replicate(site), run.values, true, run.grain_steps};
+    for (std::size_t j = 0; j < made.values.size(); ++j) {
+      const bool fitted = calibration.measurements[j].role == Role::fit;
+      if (fitted && !std::isfinite(made.values[j])) made.succeeded = false;
+    }
+    runs(site, run.level).push_back(std::move(made));
+  }
+}
 
 bool Ledger::two_levels() const {
   return calibration_.budget.fidelity != calibration_.budget.confirm_fidelity;

@@ -40,6 +40,19 @@ struct Scatter {
 
 enum class Level : std::uint8_t { search, confirm };
 
+/// A run that was made for another question, and answers this one too.
+struct KnownRun {
+  engine::ParameterSet parameters;
+  Level level = Level::search;
+  std::vector<double> values;  ///< as a SiteRun's
+  double grain_steps = 0.0;
+};
+
+/// Those of the evaluations that are whole runs of this calibration's suite at parameter sets of
+/// its space: what another target, or a model with one effect less, has already paid for.
+std::vector<KnownRun> known_runs(const Calibration& calibration,
+                                 std::span<const engine::Evaluation> evaluations);
+
 class Ledger {
  public:
   struct Request {
@@ -48,7 +61,9 @@ class Ledger {
     Level level = Level::search;
   };
 
-  Ledger(const Calibration& calibration, const Evaluator& evaluator);
+  Ledger(const Calibration& calibration,
+         const Evaluator& evaluator,
+         std::span<const KnownRun> known = {});
 
   /// The site at a point: the one already there, or a new one.
   std::size_t site_at(const UnitPoint& point);

@@ -21,6 +21,7 @@ struct Measurement {
   double value = 0.0;           ///< SI
   double standard_error = 0.0;  ///< SI; standard uncertainty of `value`, k = 1
   double allowance = 0.0;       ///< SI; stated model discrepancy, added in quadrature
+  int replicates = 0;           ///< that `standard_error` was estimated from; 0: it is known
   Role role = Role::fit;
   engine::Unit unit;  ///< as the user gave it; for printing only
   std::string source;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/catalogue.hpp"
+
 namespace repose::calibrator {
 
 Suite::Suite(std::span<const Measurement> measurements) {
@@ -16,6 +18,21 @@ Suite::Suite(std::span<const Measurement> measurements) {
     readings_.push_back(
         {static_cast<std::size_t>(found - experiments_.begin()), measurement.observable});
   }
+}
+
+std::optional<std::size_t> Suite::place_of(const engine::Experiment& experiment) const {
+  const engine::ExperimentInfo* info = engine::find_experiment(experiment.name);
+  for (std::size_t i = 0; i < experiments_.size(); ++i) {
+    engine::Experiment own = experiments_[i];
+    own.fidelity = experiment.fidelity;
+    if (own == experiment) return i;
+    // A default that is spelt out is the same question.
+    if (info != nullptr && own.name == experiment.name &&
+        engine::resolved_settings(*info, own) == engine::resolved_settings(*info, experiment)) {
+      return i;
+    }
+  }
+  return std::nullopt;
 }
 
 void Suite::append_trials(const engine::ParameterSet& parameters,

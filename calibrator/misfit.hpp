@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,9 @@ class Suite {
 
   /// Trials of one evaluation.
   [[nodiscard]] std::size_t size() const { return experiments_.size(); }
+
+  /// Which of the experiments it is, whatever its fidelity; nothing where it is none of them.
+  [[nodiscard]] std::optional<std::size_t> place_of(const engine::Experiment& experiment) const;
 
   /// Appends the trials of one evaluation. Fidelity is not the experiment's but the caller's.
   void append_trials(const engine::ParameterSet& parameters,

@@ -23,6 +23,7 @@ struct Watch {
   Minimum best;
   std::vector<double> clipped;
   std::exception_ptr thrown;
+  const std::function<bool()>* done = nullptr;
 };
 
 std::vector<double> clip(std::vector<double> point, const Box& box) {
@@ -42,6 +43,7 @@ double watch_value(unsigned n, const double* x, double* /*gradient*/, void* data
     if (value < watch.best.value || watch.best.at.empty()) {
       watch.best = {watch.clipped, value};
     }
+    if (watch.done != nullptr && *watch.done && (*watch.done)()) nlopt_force_stop(watch.handle);
     return std::isfinite(value) ? std::min(value, very_large) : very_large;
   } catch (...) {
     watch.thrown = std::current_exception();
@@ -50,26 +52,33 @@ double watch_value(unsigned n, const double* x, double* /*gradient*/, void* data
   }
 }
 
+using Handle = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
+
+Handle create(nlopt_algorithm algorithm, std::size_t dimensions) {
+  return {nlopt_create(algorithm, static_cast<unsigned>(dimensions)), &nlopt_destroy};
+}
+
 /// One run of one algorithm. Its return code is of no interest: whether it converged, ran out of
 /// evaluations or hit its rounding limit, the best point seen is the answer.
-Minimum run(nlopt_algorithm algorithm,
+Minimum run(const Handle& handle,
             const Objective& objective,
             const Box& box,
             std::vector<double> start,
-            int evaluations,
-            double step,
-            double tolerance) {
-  const std::size_t n = start.size();
-  const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> handle(
-      nlopt_create(algorithm, static_cast<unsigned>(n)), &nlopt_destroy);
-  Watch watch{objective, box, handle.get(), {{}, std::numeric_limits<double>::infinity()}, {}, {}};
-  nlopt_srand(1);  // the state is the thread's own: without this, equal searches differ
+            const DirectSearch& options) {
+  Watch watch{objective,
+              box,
+              handle.get(),
+              {{}, std::numeric_limits<double>::infinity()},
+              {},
+              {},
+              &options.done};
+  nlopt_srand(options.seed);  // the state is the thread's own: without this, equal searches differ
   nlopt_set_lower_bounds(handle.get(), box.lower.data());
   nlopt_set_upper_bounds(handle.get(), box.upper.data());
   nlopt_set_min_objective(handle.get(), &watch_value, &watch);
-  nlopt_set_maxeval(handle.get(), evaluations);
-  if (tolerance > 0.0) nlopt_set_xtol_abs1(handle.get(), tolerance);
-  if (step > 0.0) nlopt_set_initial_step1(handle.get(), step);
+  nlopt_set_maxeval(handle.get(), options.evaluations);
+  if (options.tolerance > 0.0) nlopt_set_xtol_abs1(handle.get(), options.tolerance);
+  if (options.step > 0.0) nlopt_set_initial_step1(handle.get(), options.step);
   double value = 0.0;
   nlopt_optimize(handle.get(), start.data(), &value);
   if (watch.thrown) std::rethrow_exception(watch.thrown);
@@ -78,6 +87,31 @@ Minimum run(nlopt_algorithm algorithm,
     watch.best.value = objective(watch.best.at);
   }
   return watch.best;
+}
+
+/// BOBYQA needs two dimensions.
+nlopt_algorithm quadratic_model(std::size_t dimensions) {
+  return dimensions == 1 ? NLOPT_LN_SBPLX : NLOPT_LN_BOBYQA;
+}
+
+nlopt_algorithm algorithm_of(Algorithm algorithm, std::size_t dimensions) {
+  switch (algorithm) {
+    case Algorithm::bobyqa:
+      return quadratic_model(dimensions);
+    case Algorithm::cobyla:
+      return NLOPT_LN_COBYLA;
+    case Algorithm::sbplx:
+      return NLOPT_LN_SBPLX;
+    case Algorithm::crs2:
+      return NLOPT_GN_CRS2_LM;
+    case Algorithm::isres:
+      return NLOPT_GN_ISRES;
+    case Algorithm::direct_l:
+      return NLOPT_GN_DIRECT_L;
+    case Algorithm::mlsl:
+      return NLOPT_G_MLSL_LDS;
+  }
+  return NLOPT_LN_SBPLX;
 }
 
 }  // namespace
@@ -93,21 +127,27 @@ Minimum minimise_locally(const Objective& objective,
   assert(start.size() == box.lower.size());
   start = clip(std::move(start), box);
   if (start.empty()) return {start, objective(start)};
-  const nlopt_algorithm algorithm = start.size() == 1 ? NLOPT_LN_SBPLX : NLOPT_LN_BOBYQA;
-  return run(algorithm,
+  const Handle handle = create(quadratic_model(start.size()), start.size());
+  return run(handle,
              objective,
              box,
              std::move(start),
-             options.evaluations,
-             options.step,
-             options.tolerance);
+             {.evaluations = options.evaluations,
+              .step = options.step,
+              .tolerance = options.tolerance,
+              .done = {}});
 }
 
 Minimum minimise_globally(const Objective& objective, const Box& box, int evaluations) {
   std::vector<double> centre(box.lower.size());
   for (std::size_t k = 0; k < centre.size(); ++k) centre[k] = 0.5 * (box.lower[k] + box.upper[k]);
   if (centre.empty()) return {centre, objective(centre)};
-  return run(NLOPT_GN_DIRECT_L, objective, box, std::move(centre), evaluations, 0.0, 0.0);
+  const Handle handle = create(NLOPT_GN_DIRECT_L, centre.size());
+  return run(handle,
+             objective,
+             box,
+             std::move(centre),
+             {.evaluations = evaluations, .step = 0.0, .tolerance = 0.0, .done = {}});
 }
 
 Minimum minimise(const Objective& objective,
@@ -124,6 +164,25 @@ Minimum minimise(const Objective& objective,
     if (found.value < best.value) best = std::move(found);
   }
   return best;
+}
+
+Minimum minimise_by(Algorithm algorithm,
+                    const Objective& objective,
+                    const Box& box,
+                    std::vector<double> start,
+                    const DirectSearch& options) {
+  const std::size_t n = start.size();
+  const Handle handle = create(algorithm_of(algorithm, n), n);
+  if (algorithm == Algorithm::mlsl) {
+    const Handle local = create(quadratic_model(n), n);
+    nlopt_set_xtol_abs1(local.get(), 10.0 * options.tolerance);
+    nlopt_set_initial_step1(local.get(), options.step);
+    nlopt_set_local_optimizer(handle.get(), local.get());
+  }
+  const bool global = algorithm >= Algorithm::crs2;
+  DirectSearch here = options;
+  if (global) here.step = here.tolerance = 0.0;  // they go on until the budget is spent
+  return run(handle, objective, box, clip(std::move(start), box), here);
 }
 
 }  // namespace repose::calibrator

@@ -7,6 +7,7 @@
 /// search and is thrown on from here: none passes through NLopt's own frames.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -49,5 +50,28 @@ Minimum minimise(const Objective& objective,
                  std::span<const std::vector<double>> starts,
                  int global_evaluations,
                  const LocalSearch& options = {});
+
+/// What a calibration can be searched with directly, one evaluation per call, for comparison.
+///
+///   cobyla  Powell 1994 (Advances in Optimization and Numerical Analysis, 51-67)
+///   crs2    Kaelo & Ali 2006 (J. Optim. Theory Appl. 130, 253-264)
+///   isres   Runarsson & Yao 2005 (IEEE Trans. Syst. Man Cybern. C 35, 233-243)
+///   mlsl    Kucherenko & Sytsko 2005 (Comput. Optim. Appl. 30, 297-318), BOBYQA from each start
+enum class Algorithm : std::uint8_t { bobyqa, cobyla, sbplx, crs2, isres, direct_l, mlsl };
+
+struct DirectSearch {
+  int evaluations = 100;       ///< about; `done` is exact
+  double step = 0.25;          ///< first step of the local ones
+  double tolerance = 1e-3;     ///< on the coordinates, absolute
+  std::uint64_t seed = 1;      ///< of those that draw
+  std::function<bool()> done;  ///< asked after each evaluation; may be empty
+};
+
+/// In one dimension subplex stands in for BOBYQA, which needs two.
+Minimum minimise_by(Algorithm algorithm,
+                    const Objective& objective,
+                    const Box& box,
+                    std::vector<double> start,
+                    const DirectSearch& options);
 
 }  // namespace repose::calibrator

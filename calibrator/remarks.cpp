@@ -174,6 +174,12 @@ std::string measurement_name(const Measurement& measurement) {
 std::vector<std::string> remarks(const Outlook& outlook, const Fit& fit) {
   const Calibration& calibration = outlook.ledger.calibration();
   Sentences out;
+  const Method method = calibration.budget.method;
+  if (method != Method::repose) {
+    out.push_back(
+        "Searched by the baseline " + std::string(method_names[static_cast<std::size_t>(method)]) +
+        "; intervals and directions are the emulator's, learnt afterwards from its runs.");
+  }
   on_verdict(calibration, fit, out);
   on_identification(calibration, fit, out);
   on_bounds(calibration, outlook, fit, out);

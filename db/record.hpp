@@ -23,6 +23,19 @@ struct CalibrationRecord {
   std::optional<std::string> error;
 };
 
+/// A diagnosis as the store keeps it.
+struct DiagnosisRecord {
+  std::int64_t id = 0;
+  std::int64_t calibration = 0;
+  std::string state;  ///< as a calibration's
+  std::int64_t created_at = 0;
+  std::optional<std::int64_t> finished_at;
+  std::string request;                  ///< document
+  std::optional<std::string> progress;  ///< document
+  std::optional<std::string> result;    ///< document
+  std::optional<std::string> error;
+};
+
 /// An evaluation, named by the digest of its question.
 struct EvaluationRecord {
   std::string key;

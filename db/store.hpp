@@ -74,6 +74,25 @@ class Store {
               const std::optional<std::string>& error,
               std::int64_t now);
 
+  // Diagnoses of finished calibrations.
+  std::int64_t add_diagnosis(std::int64_t calibration,
+                             const std::string& request,
+                             std::int64_t now);
+  [[nodiscard]] std::optional<DiagnosisRecord> diagnosis(std::int64_t id) const;
+  /// All of a calibration, newest first.
+  [[nodiscard]] std::vector<DiagnosisRecord> diagnoses(std::int64_t calibration) const;
+  void set_diagnosis_progress(std::int64_t id, const std::string& progress);
+  /// queued or running -> done, failed or cancelled; false where it was final already.
+  bool finish_diagnosis(std::int64_t id,
+                        std::string_view state,
+                        const std::optional<std::string>& result,
+                        const std::optional<std::string>& error,
+                        std::int64_t now);
+  void note_used_by_diagnosis(std::int64_t diagnosis,
+                              std::int64_t first_ordinal,
+                              const std::vector<std::string>& keys);
+  [[nodiscard]] std::vector<UsedEvaluation> used_by_diagnosis(std::int64_t diagnosis) const;
+
   // Evaluations.
   [[nodiscard]] std::optional<EvaluationRecord> evaluation(const std::string& key) const;
   /// Keeps an answer; one that is there already stays. True where it was new.

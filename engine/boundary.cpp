@@ -9,8 +9,6 @@ namespace repose::engine {
 
 namespace {
 
-constexpr double endless = 64.0;  // m; beyond any apparatus, and near enough to keep its digits
-
 Surface swept(Surface::Sweep sweep, Vec3 from, Vec3 to, MaterialId material) {
   Surface result;
   result.sweep = sweep;
@@ -216,7 +214,7 @@ void append_polygon(const Surface& s, std::vector<FrameWall>& walls) {
   };
   for (int k = 0; k < sides; ++k) {
     const Vec3 from = corner(k), to = corner(k + 1);
-    walls.push_back({false, from.x, from.z, to.x, to.z, 0.0, 0.0, {}});
+    walls.push_back({false, from.x, from.z, to.x, to.z, 0.0, 0.0, {}, true});
   }
 }
 
@@ -235,7 +233,7 @@ std::vector<FrameWall> outline(const std::vector<Surface>& surfaces) {
       wall.triangles = triangles_of(s);
     } else {
       const bool revolved = s.sweep == Surface::Sweep::revolved;
-      wall = {revolved, s.from_s, s.from_z, s.to_s, s.to_z, s.axis_x, s.axis_y, {}};
+      wall = {revolved, s.from_s, s.from_z, s.to_s, s.to_z, s.axis_x, s.axis_y, {}, false};
     }
     result.push_back(std::move(wall));
   }

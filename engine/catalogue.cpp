@@ -15,9 +15,20 @@ template <class E>
 inline constexpr auto field_infos = infos(E::fields);
 
 template <class E>
+std::vector<double> strong_values(const GrainScale& grains) {
+  const typename E::Parameters parameters = E::strong(grains);
+  std::vector<double> values;
+  values.reserve(E::fields.size());
+  for (const auto& field : E::fields) values.push_back(parameters.*field.member);
+  return values;
+}
+
+template <class E>
 constexpr EffectInfo describe() {
   static_assert(Effect<E>);
-  return {E::text, E::stage, E::scope, field_infos<E>};
+  EffectInfo info{E::text, E::stage, E::scope, field_infos<E>};
+  if constexpr (StrongHook<E>) info.strong = strong_values<E>;
+  return info;
 }
 
 template <class... E>

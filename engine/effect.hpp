@@ -10,14 +10,18 @@
 ///   reach      each time neighbours are sought: how far from touch it still acts, m
 ///   load       the same after the sums: what each grain receives for itself, not as one of a pair
 ///   body       each step, per grain, contacts or not: diameter and velocity -> force
+///   strong     never in a run: parameters of a strong but plausible effect on such grains, where
+///              the diagnosis probes; an effect without it is never suspected to be missing
 ///
 /// At the null value of all its parameters an effect is exactly absent.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "engine/clump_shape.hpp"
 #include "engine/contact_block.hpp"
@@ -50,6 +54,32 @@ struct EffectText {
   std::string_view title;
   std::string_view summary;
   std::string_view citation;
+  std::string_view family = {};  ///< effects of one family are other forms of the same physics
+};
+
+/// Elastic constants of two materials in contact (Johnson 1985, Contact Mechanics, ch. 4 and 7).
+struct PairElastic {
+  double modulus;        ///< E* = 1 / ((1 - nu1^2) / E1 + (1 - nu2^2) / E2), Pa
+  double shear_modulus;  ///< G* = 1 / ((2 - nu1) / G1 + (2 - nu2) / G2), Pa
+};
+
+/// The grains that an effect's strength is measured by.
+struct GrainScale {
+  double radius;        ///< m
+  double density;       ///< kg/m3
+  PairElastic elastic;  ///< of grain on grain
+
+  /// N
+  [[nodiscard]] double weight() const {
+    constexpr double volume = 4.0 / 3.0 * unit::pi, gravity = 9.81;
+    return volume * radius * radius * radius * density * gravity;
+  }
+
+  /// Of two grains pressed together by the weight of one (Hertz; R* = R / 2), m.
+  [[nodiscard]] double overlap() const {
+    const double force = 0.75 * weight() / elastic.modulus;
+    return std::cbrt(2.0 * force * force / radius);
+  }
 };
 
 /// A catalogue entry: made from the effect's file, read by everyone else.
@@ -58,12 +88,9 @@ struct EffectInfo {
   Stage stage;
   Scope scope;
   std::span<const FieldInfo> fields;
-};
-
-/// Elastic constants of two materials in contact (Johnson 1985, Contact Mechanics, ch. 4 and 7).
-struct PairElastic {
-  double modulus;        ///< E* = 1 / ((1 - nu1^2) / E1 + (1 - nu2^2) / E2), Pa
-  double shear_modulus;  ///< G* = 1 / ((2 - nu1) / G1 + (2 - nu2) / G2), Pa
+  /// Values of the fields for a strong but plausible effect on such grains, SI; null where the
+  /// effect is never suspected to be missing.
+  std::vector<double> (*strong)(const GrainScale& grains) = nullptr;
 };
 
 template <class E>
@@ -102,6 +129,11 @@ concept PopulateHook = requires(const typename E::Parameters& parameters, Random
 template <class E>
 concept ShapeHook = requires(const typename E::Parameters& parameters) {
   { E::shape(parameters) } -> std::same_as<std::span<const ClumpMember>>;
+};
+
+template <class E>
+concept StrongHook = requires(const GrainScale& grains) {
+  { E::strong(grains) } -> std::same_as<typename E::Parameters>;
 };
 
 template <class E>

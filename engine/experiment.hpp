@@ -117,6 +117,9 @@ struct ObservableInfo {
   std::string_view name;
   Unit unit;
   std::string_view meaning;
+  /// How far DEM codes of the same physics are apart, relative (of an angle's tangent): model
+  /// predictions are never trusted more closely.
+  double code_spread = 0.03;
 };
 
 struct ExperimentText {

@@ -27,6 +27,7 @@ struct FieldInfo {
   double draft = absent;       ///< setting: default at draft fidelity where it differs
   double paper = absent;       ///< setting: default at paper fidelity where it differs
   std::span<const std::string_view> choices = {};  ///< named values: the number is the index
+  bool whole = false;  ///< only whole numbers mean anything; others are rounded
 };
 
 /// A member of S with its description.

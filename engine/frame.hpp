@@ -13,11 +13,16 @@
 namespace repose::engine {
 
 struct FrameGrain {
-  Vec3 centre;           ///< m
-  Vec3 velocity;         ///< m/s
-  double radius = 0.0;   ///< m
-  std::uint64_t id = 0;  ///< stays with the grain through the run
+  Vec3 centre;             ///< m
+  Vec3 velocity;           ///< m/s
+  double radius = 0.0;     ///< m
+  std::uint64_t id = 0;    ///< stays with the grain through the run
+  std::uint64_t body = 0;  ///< equal for the members of a clump: the first one's id; a sphere's own
 };
+
+/// What has no end runs to minus and plus this: beyond any apparatus, and near enough to keep its
+/// digits, m.
+inline constexpr double endless = 64.0;
 
 /// A wall as a curve in a half plane that is swept round an upright axis or along y, or as
 /// triangles.
@@ -27,6 +32,7 @@ struct FrameWall {
   double to_s = 0.0, to_z = 0.0;
   double centre_x = 0.0, centre_y = 0.0;
   std::vector<Triangle> triangles = {};  ///< instead of the curve, where there are any
+  bool closed = false;  ///< a side of a closed section along y, such as the mantle of a lying drum
 };
 
 struct Frame {

@@ -13,9 +13,11 @@ enum class Purpose : std::uint64_t {
   grain_position = 2,
   grain_velocity = 3,
   grain_orientation = 4,
-  trial = 16,     ///< the seed of an evaluation
-  design = 17,    ///< space-filling points
-  proposal = 18,  ///< draws from an emulator
+  trial = 16,           ///< the seed of an evaluation
+  design = 17,          ///< space-filling points
+  proposal = 18,        ///< draws from an emulator
+  diagnosis = 19,       ///< the seed of a diagnosis' evaluation, and its designs
+  diagnosis_null = 20,  ///< data drawn from a model in which nothing is missing
 };
 
 class Random {

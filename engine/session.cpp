@@ -248,10 +248,13 @@ void Session::stage(std::string_view name) { emit(name); }
 void Session::emit(std::string_view stage) {
   if (!run_.frames) return;
   const Grains& grains = world_->grains();
+  const Clumps& clumps = world_->clumps();
   frame_grains_.clear();
   for (std::size_t k = 0; k < grains.size(); ++k) {
     const GrainRow& g = grains.rows[k];
-    frame_grains_.push_back({g.centre(), g.velocity(), g.radius, grains.ids[k]});
+    const std::uint32_t id = grains.ids[k], body = clumps.body_of(id);
+    const std::uint32_t first = body == no_body ? id : clumps.bodies()[body].first_id;
+    frame_grains_.push_back({g.centre(), g.velocity(), g.radius, id, first});
   }
   std::ranges::sort(frame_grains_, {}, &FrameGrain::id);
   const std::vector<FrameWall> walls = outline(world_->surfaces());

@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "calibrator/calibration.hpp"
 #include "db/store.hpp"
 #include "engine/any_machine.hpp"
 #include "engine/catalogue.hpp"
@@ -47,9 +48,13 @@ constexpr const char* calibrate_footer =
     "Ctrl-C stops; the same command takes the calibration up where it was. Progress goes to\n"
     "standard error: a display that renews itself on a terminal, a line a batch elsewhere.";
 
+constexpr const char* study_footer =
+    "Every finished evaluation is kept in the database: the same command goes on where an\n"
+    "interrupted one was, and prints again what is complete without simulating.";
+
 CLI::Option* add_database(CLI::App& command, std::filesystem::path& database) {
   return command
-      .add_option("--db",
+      .add_option("--db,--database",
                   database,
                   "Database file (default: $REPOSE_DB, else repose/repose.db in "
                   "$XDG_DATA_HOME or ~/.local/share)")
@@ -136,6 +141,49 @@ void add_calibrate(CLI::App& app, CalibrateCommand& options, Work& work) {
   });
 }
 
+void add_missing_effect(CLI::App& app, MissingEffectCommand& options, Work& work) {
+  const auto add =
+      [&](const char* name, const char* what, int (*run)(const MissingEffectCommand&)) {
+        CLI::App& command = *app.add_subcommand(name, what);
+        command.add_option("id", options.id, "Calibration")->required();
+        add_database(command, options.database);
+        add_json(command, options.form, "One JSON object on standard output");
+        command.callback([&, run] {
+          work = [&, run] {
+            if (options.database.empty()) options.database = default_database();
+            return run(options);
+          };
+        });
+        return &command;
+      };
+  const auto add_tolerance = [&](CLI::App& command) {
+    command
+        .add_option("--tolerance",
+                    options.tolerances,
+                    "How closely codes agree on an observable, in place of the catalogue's share")
+        ->type_name("EXPERIMENT.OBSERVABLE=SHARE")
+        ->expected(1)
+        ->take_all();
+  };
+  const auto add_workers = [&](CLI::App& command) {
+    command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
+        ->check(CLI::Range(1, 4096));
+  };
+  add_tolerance(
+      *add("compare", "Where a calibrated model misses its measurements", compare_command));
+  CLI::App& diagnose =
+      *add("diagnose", "Which physical effect a calibrated model lacks", diagnose_command);
+  add_tolerance(diagnose);
+  add_workers(diagnose);
+  CLI::App& extend = *add("extend", "Add an effect to a model and calibrate it", extend_command);
+  extend.add_option("--effect", options.effect, "Which; `repose diagnose` names them")->required();
+  add_workers(extend);
+  extend.add_option("--report", options.report, "Report (default: beside the database)")
+      ->type_name("FILE");
+  extend.add_flag_callback(
+      "--no-pictures", [&options] { options.pictures = false; }, "No pictures in the report");
+}
+
 void add_report(CLI::App& app, ReportCommand& options, Work& work) {
   CLI::App& command = *app.add_subcommand("report", "Write the HTML report of a calibration");
   command.add_option("id", options.id, "Calibration")->required();
@@ -203,9 +251,32 @@ void add_serve(CLI::App& app, ServeCommand& options, Work& work) {
   });
 }
 
-void add_bench(CLI::App& app, BenchCommand& options, Work& work) {
-  CLI::App& bench = *app.add_subcommand("bench", "Measure how fast this machine is");
+void add_bench_calibrator(CLI::App& bench, BenchCalibratorCommand& options, Work& work) {
+  CLI::App& command = *bench.add_subcommand(
+      "calibrator", "Evaluations that each method needs where the truth is known");
+  command.add_option("--case", options.cases, "Which (default: all)")
+      ->check(CLI::IsMember(options.cases))
+      ->expected(1)
+      ->take_all();
+  command.add_option("--seeds", options.seeds, "Studies of each case")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  options.methods.assign(calibrator::method_names.begin(), calibrator::method_names.end());
+  command.add_option("--methods", options.methods, "Which, with commas between (default: all)")
+      ->check(CLI::IsMember(options.methods))
+      ->delimiter(',')
+      ->take_all();
+  add_json(command, options.form, "JSON on standard output");
+  command.callback([&] { work = [&] { return bench_calibrator_command(options); }; });
+}
+
+void add_bench(CLI::App& app,
+               BenchCommand& options,
+               BenchCalibratorCommand& calibrator,
+               Work& work) {
+  CLI::App& bench = *app.add_subcommand("bench", "Measure the engine's speed and the calibrator's");
   bench.require_subcommand(1);
+  add_bench_calibrator(bench, calibrator, work);
   CLI::App& command = *bench.add_subcommand("engine", "The engine, on beds of the reference grain");
   command.add_option("--scene", options.scenes, "Which (default: all)")
       ->check(CLI::IsMember(options.scenes))
@@ -235,6 +306,26 @@ void add_bench(CLI::App& app, BenchCommand& options, Work& work) {
       ->check(CLI::Range(1, 64));
   add_json(command, options.form, "One JSON object on standard output");
   command.callback([&] { work = [&] { return bench_engine_command(options); }; });
+}
+
+void add_study(CLI::App& app, StudyCommand& options, Work& work) {
+  CLI::App& command = *app.add_subcommand("study", "Run a published simulation study again");
+  command.add_option("name", options.name, "Which: boac2010")->required();
+  command.add_flag("--quick", options.quick, "Draft fidelity, few replicates");
+  command.add_option("--output", options.output, "Folder for the JSON file and the HTML report")
+      ->type_name("FOLDER")
+      ->default_str("the working folder");
+  add_database(command, options.database);
+  command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
+      ->check(CLI::Range(1, 4096));
+  add_json(command, options.form, "The result on standard output");
+  command.footer(study_footer);
+  command.callback([&] {
+    work = [&] {
+      if (options.database.empty()) options.database = default_database();
+      return study_command(options);
+    };
+  });
 }
 
 void add_catalogue(CLI::App& app, Form& form, SchemaCommand& options, Work& work) {
@@ -269,12 +360,15 @@ void add_materials(CLI::App& app, MaterialsCommand& options, Work& work) {
 struct Commands {
   EvaluateCommand evaluate;
   CalibrateCommand calibrate;
+  MissingEffectCommand missing_effect;
   ReportCommand report;
   ListCommand list;
   ShowCommand show;
   ServeCommand serve;
   BenchCommand bench;
+  BenchCalibratorCommand bench_calibrator;
   MaterialsCommand materials;
+  StudyCommand study;
   Form catalogue_form = Form::json;
   SchemaCommand schema;
 };
@@ -309,12 +403,14 @@ int run_command_line(int argc, const char* const* argv) {
   Work work;
   add_evaluate(app, commands.evaluate, work);
   add_calibrate(app, commands.calibrate, work);
+  add_missing_effect(app, commands.missing_effect, work);
   add_report(app, commands.report, work);
   add_serve(app, commands.serve, work);
   add_list(app, commands.list, work);
   add_show(app, commands.show, work);
-  add_bench(app, commands.bench, work);
+  add_bench(app, commands.bench, commands.bench_calibrator, work);
   add_materials(app, commands.materials, work);
+  add_study(app, commands.study, work);
   add_catalogue(app, commands.catalogue_form, commands.schema, work);
   CLI::App& answer = *app.add_subcommand("answer", "Answer one trial from standard input");
   answer.group("");  // hidden: for the worker pool

@@ -14,6 +14,7 @@
 #include "server/json/evaluation_json.hpp"
 #include "server/json/fit_json.hpp"
 #include "server/json/job_json.hpp"
+#include "server/missing_effect.hpp"
 
 namespace repose::server {
 
@@ -125,7 +126,8 @@ void Service::State::run(std::int64_t id,
     if (events.progress) events.progress(progress);
   };
   try {
-    const Fit fit = calibrator::calibrate(calibration, evaluator, stop, observer);
+    const auto known = inherited_runs(store, calibration);
+    const Fit fit = calibrator::calibrate(calibration, evaluator, stop, observer, known);
     if (last) store.set_progress(id, print_progress(calibration, *last));
     // A fit that lacks evaluations because of a stop is no fit.
     interrupted |= stop.stop_requested() || fit.stop == calibrator::StopReason::cancelled;
@@ -248,6 +250,29 @@ Answer<std::string> Service::cancel(std::int64_t id) {
   state_->take_cancel(id);
   if (!state_->store.finish(id, "cancelled", {}, {}, {}, microseconds_now())) return final();
   return calibration(id);
+}
+
+Answer<std::string> Service::compare(std::int64_t id, const calibrator::Tolerances& stated) const {
+  return server::compare(state_->store, id, stated);
+}
+
+Answer<std::string> Service::diagnose(std::int64_t id,
+                                      const calibrator::Tolerances& stated,
+                                      const std::stop_token& stop,
+                                      const DiagnosisEvents& events) {
+  return server::diagnose(state_->store, state_->worker_options, id, stated, stop, events);
+}
+
+Answer<std::string> Service::diagnosis(std::int64_t id) const {
+  return server::diagnosis(state_->store, id);
+}
+
+Answer<std::string> Service::diagnoses(std::int64_t calibration) const {
+  return server::diagnoses(state_->store, calibration);
+}
+
+Answer<std::string> Service::extension_study(std::int64_t id, const std::string& effect) const {
+  return server::extension_study(state_->store, id, effect);
 }
 
 std::vector<engine::Evaluation> Service::evaluate(const engine::Trial& trial, int replicates) {

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "calibrator/calibrate.hpp"
+#include "calibrator/diagnosis/diagnose.hpp"
 #include "engine/result.hpp"
 #include "server/json/problem.hpp"
 
@@ -46,6 +47,13 @@ struct CalibrationEvents {
   std::function<void(std::size_t done, std::size_t all, bool stored)> trial;
 };
 
+/// What happens while a diagnosis runs in the foreground.
+struct DiagnosisEvents {
+  calibrator::DiagnosisObserver progress;
+  /// After each trial of a batch: done and all of the batch, and whether the store had it.
+  std::function<void(std::size_t done, std::size_t all, bool stored)> trial;
+};
+
 class Service {
  public:
   /// Opens or makes the database, takes its lock, migrates it. Throws db::Error with a clear
@@ -76,6 +84,18 @@ class Service {
   /// every study name, or of one.
   [[nodiscard]] std::string best_fits(const std::optional<std::string>& name) const;
   Answer<std::string> cancel(std::int64_t id);
+
+  // The missing effect: see server/missing_effect.hpp.
+  [[nodiscard]] Answer<std::string> compare(std::int64_t id,
+                                            const calibrator::Tolerances& stated) const;
+  Answer<std::string> diagnose(std::int64_t id,
+                               const calibrator::Tolerances& stated,
+                               const std::stop_token& stop,
+                               const DiagnosisEvents& events);
+  [[nodiscard]] Answer<std::string> diagnosis(std::int64_t id) const;
+  [[nodiscard]] Answer<std::string> diagnoses(std::int64_t calibration) const;
+  [[nodiscard]] Answer<std::string> extension_study(std::int64_t id,
+                                                    const std::string& effect) const;
 
   /// One virtual experiment, `replicates` seeds from `seed` on; stored like any other evaluation.
   std::vector<engine::Evaluation> evaluate(const engine::Trial& trial, int replicates);

@@ -49,6 +49,12 @@ struct AreaCohesion {
   };
   static constexpr Stage stage = Stage::adhesion;
   static constexpr Scope scope = Scope::pair;
+
+  /// A contact that bears a grain's weight attracts with as much.
+  static Parameters strong(const GrainScale& g) {
+    return {g.weight() / (unit::pi * g.radius * g.overlap())};
+  }
+
   static constexpr int history_columns = 0;
 
   static Coefficients prepare(const Parameters& p, const PairElastic&) { return p; }

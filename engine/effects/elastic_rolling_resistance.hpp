@@ -33,6 +33,7 @@ struct ElasticRollingResistance {
       .title = "Elastic rolling resistance",
       .summary = "Grains resist rolling with a couple that winds up like a spring, up to a cap.",
       .citation = "Ai et al. 2011, Powder Technology 206, 269-282",
+      .family = "rolling",
   };
   static constexpr std::array fields{
       Field<Parameters>{&Parameters::coefficient,

@@ -39,10 +39,15 @@ struct GrainShape {
                          .meaning = "spheres that make a grain, rounded to a whole number",
                          .null_value = 1.0,
                          .lower = 1.0,
-                         .upper = static_cast<double>(most_soybean_spheres)}},
+                         .upper = static_cast<double>(most_soybean_spheres),
+                         .whole = true}},
   };
   static constexpr Stage stage = Stage::population;
   static constexpr Scope scope = Scope::material;
+
+  static constexpr Parameters strong(const GrainScale&) {
+    return {static_cast<double>(most_soybean_spheres)};
+  }
 
   /// The spheres of a grain, of any size; a single one means that grains are spheres.
   static std::span<const ClumpMember> shape(const Parameters& p) {

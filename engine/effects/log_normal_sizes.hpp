@@ -30,6 +30,7 @@ struct LogNormalSizes {
       .title = "Log-normal sizes",
       .summary = "Grains differ in size: the logarithms of their diameters are normal.",
       .citation = "Hatch & Choate 1929, J. Franklin Inst. 207, 369-387",
+      .family = "sizes",
   };
   static constexpr std::array fields{
       Field<Parameters>{&Parameters::deviation,

@@ -36,6 +36,7 @@ struct OwnSpinRollingResistance {
       .title = "Own-spin rolling resistance",
       .summary = "Every contact brakes a grain's own spin, whatever the spin of its neighbour.",
       .citation = "Sakaguchi et al. 1993, Int. J. Mod. Phys. B 7, 1949-1963",
+      .family = "rolling",
   };
   static constexpr std::array fields{
       Field<Parameters>{&Parameters::coefficient,

@@ -34,6 +34,7 @@ struct RollingResistance {
       .summary =
           "Grains that are not perfect spheres resist rolling, with a couple of constant size.",
       .citation = "Zhou et al. 1999, Physica A 269, 536-553",
+      .family = "rolling",
   };
   static constexpr std::array fields{
       Field<Parameters>{&Parameters::coefficient,
@@ -46,6 +47,8 @@ struct RollingResistance {
   };
   static constexpr Stage stage = Stage::rolling;
   static constexpr Scope scope = Scope::pair;
+
+  static constexpr Parameters strong(const GrainScale&) { return {0.2}; }
   static constexpr int history_columns = 0;
 
   static Coefficients prepare(const Parameters& p, const PairElastic&) { return p; }

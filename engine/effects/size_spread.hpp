@@ -27,6 +27,7 @@ struct SizeSpread {
       .title = "Size spread",
       .summary = "Grains differ in size: their volumes are normally distributed about the mean.",
       .citation = "Boac et al. 2010, Trans. ASABE 53(4), 1201-1216",
+      .family = "sizes",
   };
   static constexpr std::array fields{
       Field<Parameters>{&Parameters::deviation,
@@ -39,6 +40,8 @@ struct SizeSpread {
   };
   static constexpr Stage stage = Stage::population;
   static constexpr Scope scope = Scope::material;
+
+  static constexpr Parameters strong(const GrainScale&) { return {0.4}; }
 
   static constexpr double cut = 2.0;  ///< standard deviations kept on either side
 

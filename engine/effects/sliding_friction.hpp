@@ -46,6 +46,8 @@ struct SlidingFriction {
   };
   static constexpr Stage stage = Stage::friction;
   static constexpr Scope scope = Scope::pair;
+
+  static constexpr Parameters strong(const GrainScale&) { return {0.6}; }
   static constexpr int history_columns = 3;
 
   static Coefficients prepare(const Parameters& p, const PairElastic&) { return p; }

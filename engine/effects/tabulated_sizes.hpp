@@ -36,6 +36,7 @@ struct TabulatedSizes {
       .title = "Tabulated sizes",
       .summary = "Grains differ in size: a sieve curve through d10, d50 and d90 by mass.",
       .citation = "ISO 9276-1:1998",
+      .family = "sizes",
   };
   static constexpr std::array fields{
       Field<Parameters>{&Parameters::d10_over_d50,

@@ -6,7 +6,8 @@
 /// cost). What overflows falls off and is removed. When a hundredth
 /// of the kettle's content has overflowed the source is taken away; when all grains are at rest,
 /// those above the rim are struck off: bulk_density = mass of the grains whose centre is inside
-/// below the rim / volume of the kettle.
+/// below the rim / volume of the kettle. (`rim` = whole: of the grains that lie below the rim
+/// wholly, a clump as the sphere that holds it.)
 ///
 /// Source: USDA GIPSA test weight apparatus as used by Boac et al. 2010, Trans. ASABE 53(4),
 /// 1201-1216.
@@ -16,7 +17,6 @@
 
 #include "engine/experiments/all.hpp"
 #include "engine/filling.hpp"
-#include "engine/instrument.hpp"
 #include "engine/refusal.hpp"
 #include "engine/session.hpp"
 
@@ -25,6 +25,7 @@ namespace repose::engine::experiments {
 namespace {
 
 constexpr std::array<std::string_view, 2> sources{"hopper", "stream"};
+constexpr std::array<std::string_view, 2> rims{"centre", "whole"};
 
 struct Kettle {
   struct Settings {
@@ -35,6 +36,7 @@ struct Kettle {
     double source;
     double rate;
     double speed;
+    double rim;
     double time_step;
   };
 
@@ -104,6 +106,14 @@ struct Kettle {
                        .null_value = 0.5,
                        .lower = 0.01,
                        .upper = 10.0}},
+      Field<Settings>{&Settings::rim,
+                      {.name = "rim",
+                       .unit = unit::one,
+                       .meaning = "what of a grain must lie below the rim for it to be counted",
+                       .null_value = 0.0,
+                       .lower = 0.0,
+                       .upper = 1.0,
+                       .choices = rims}},
       Field<Settings>{&Settings::time_step,
                       {.name = "time_step",
                        .unit = unit::one,
@@ -122,6 +132,8 @@ struct Kettle {
   static Readings run(const Settings& s, Session& session);
 
  private:
+  /// Mass of the grains that count, kg.
+  static double mass_inside(const Settings& s, const World& world);
   static bool pour_from_hopper(const Settings& s, Session& session);
   static bool pour_from_stream(const Settings& s, Session& session);
   static bool overflow(const Settings& s,
@@ -213,6 +225,18 @@ std::string Kettle::refuse(const Settings& s, double largest_grain_diameter) {
       largest_grain_diameter);
 }
 
+double Kettle::mass_inside(const Settings& s, const World& world) {
+  const double radius = 0.5 * s.diameter;
+  const double above_centre = s.rim == 0.0 ? 0.0 : 1.0;  // radii of the grain
+  double total = 0.0;
+  world.for_each_grain([&](const GrainRow& g, std::uint32_t /*id*/) {
+    const Vec3 c = g.centre();
+    const bool below = c.z > 0.0 && c.z + above_centre * g.radius < s.height;
+    if (below && c.x * c.x + c.y * c.y < radius * radius) total += mass(g);
+  });
+  return total;
+}
+
 Readings Kettle::run(const Settings& s, Session& session) {
   const double rim = 0.5 * s.diameter;
   const double d = session.grain().diameter;
@@ -234,10 +258,7 @@ Readings Kettle::run(const Settings& s, Session& session) {
   if (!session.rest(10.0)) return {};
   session.stage("filled");
 
-  const double inside = mass_where(session.world(), [&](const Vec3& c) {
-    return c.z > 0.0 && c.z < s.height && c.x * c.x + c.y * c.y < rim * rim;
-  });
-  return std::vector{inside / volume(s)};
+  return std::vector{mass_inside(s, session.world()) / volume(s)};
 }
 
 constexpr auto settings = infos(Kettle::fields);

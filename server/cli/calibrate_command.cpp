@@ -9,6 +9,7 @@
 #include "server/cli/interrupt.hpp"
 #include "server/cli/progress.hpp"
 #include "server/cli/summary.hpp"
+#include "server/json/calibration_json.hpp"
 #include "server/service.hpp"
 
 namespace repose::server {
@@ -50,14 +51,10 @@ int stopped(const CalibrateCommand& command) {
   return exit_code::interrupted;
 }
 
-}  // namespace
-
-int calibrate_command(const CalibrateCommand& command) {
+int calibrate(const CalibrateCommand& command, const StudyInput& study) {
   const bool json = command.form == Form::json;
-  const auto study = read_study(command.study);
-  if (!study) return report_error(study.error(), json);
   const Interrupt interrupt;
-  const auto answer = run(command, *study, interrupt);
+  const auto answer = run(command, study, interrupt);
   if (!answer) {
     if (interrupt.happened()) return stopped(command);
     return report_error({answer.error().message, answer.error().problems}, json);
@@ -81,6 +78,20 @@ int calibrate_command(const CalibrateCommand& command) {
                                  << document->id << " in " << command.database.string() << "\n";
   return document->fit->stop == calibrator::StopReason::failed ? exit_code::failed
                                                                : exit_code::done;
+}
+
+}  // namespace
+
+int calibrate_command(const CalibrateCommand& command) {
+  const auto study = read_study(command.study);
+  if (!study) return report_error(study.error(), command.form == Form::json);
+  return calibrate(command, *study);
+}
+
+int calibrate_text(const CalibrateCommand& command, const std::string& study) {
+  auto calibration = parse_calibration(study);
+  if (calibration) return calibrate(command, {study, *std::move(calibration)});
+  return report_error({"the study has problems", calibration.error()}, command.form == Form::json);
 }
 
 }  // namespace repose::server

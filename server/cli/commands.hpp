@@ -41,6 +41,23 @@ struct CalibrateCommand {
   Form form = Form::text;
 };
 int calibrate_command(const CalibrateCommand& command);
+/// The same with the study's text in hand.
+int calibrate_text(const CalibrateCommand& command, const std::string& study);
+
+/// Of a finished calibration: compare, diagnose, extend.
+struct MissingEffectCommand {
+  std::int64_t id = 0;
+  std::filesystem::path database;
+  std::vector<std::string> tolerances;  ///< EXPERIMENT.OBSERVABLE=SHARE
+  unsigned workers = 0;
+  std::string effect;            ///< to extend by
+  std::filesystem::path report;  ///< of the extended one
+  bool pictures = true;
+  Form form = Form::text;
+};
+int compare_command(const MissingEffectCommand& command);
+int diagnose_command(const MissingEffectCommand& command);
+int extend_command(const MissingEffectCommand& command);
 
 struct ReportCommand {
   std::int64_t id = 0;
@@ -84,12 +101,30 @@ struct BenchCommand {
 };
 int bench_engine_command(const BenchCommand& command);
 
+struct BenchCalibratorCommand {
+  std::vector<std::string> cases{"A", "B", "C", "D", "E"};
+  int seeds = 20;
+  std::vector<std::string> methods;
+  Form form = Form::text;
+};
+int bench_calibrator_command(const BenchCalibratorCommand& command);
+
 struct MaterialsCommand {
   std::string name;    ///< empty: all are listed
   bool study = false;  ///< print a study to start from
   Form form = Form::text;
 };
 int materials_command(const MaterialsCommand& command);
+
+struct StudyCommand {
+  std::string name;
+  bool quick = false;            ///< draft fidelity, few replicates
+  std::filesystem::path output;  ///< folder for NAME.json and NAME.html
+  std::filesystem::path database;
+  unsigned workers = 0;
+  Form form = Form::text;
+};
+int study_command(const StudyCommand& command);
 
 int catalogue_command(Form form);
 

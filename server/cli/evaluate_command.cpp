@@ -208,6 +208,13 @@ void print_failure(const Evaluation& evaluation) {
             << " simulated seconds): " << failure.message << "\n";
 }
 
+/// "drum, draft fidelity, seed 1".
+std::string run_title(const Trial& trial) {
+  const auto fidelity = static_cast<std::size_t>(trial.experiment.fidelity);
+  return trial.experiment.name + ", " + std::string(engine::fidelity_names.at(fidelity)) +
+         " fidelity, seed " + std::to_string(trial.seed);
+}
+
 void print_text(const Replicates& replicates) {
   const Experiment& experiment = replicates.trial.experiment;
   const std::size_t count = replicates.evaluations.size();
@@ -246,14 +253,17 @@ int evaluate_command(const EvaluateCommand& command) {
   const auto trial = trial_of(command);
   if (!trial) return report_error(trial.error(), json);
   std::optional<FrameFiles> files;
-  if (!command.frames.empty()) files.emplace(command.frames);
+  if (!command.frames.empty()) {
+    files.emplace(command.frames, run_title(*trial));
+  }
   const Interrupt interrupt;
   const Replicates replicates =
       run_replicates(*trial, command, files ? &*files : nullptr, interrupt.token());
   if (files) {
     files->write_index();
     std::cerr << "repose: " << files->frames() << " frames and " << files->pictures()
-              << " pictures in " << command.frames.string() << "; ParaView opens frames.pvd\n";
+              << " pictures in " << command.frames.string()
+              << "; a browser plays play.html, ParaView opens frames.pvd\n";
   }
   const Evaluation* failed = replicates.failed();
   if (json) std::cout << print_replicates(replicates, engine::version()) << "\n";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -32,6 +33,7 @@ void read_budget(const Place& place, calibrator::Budget& budget) {
   const Place batch = members.optional("batch");
   const Place fidelity = members.optional("fidelity");
   const Place confirm_fidelity = members.optional("confirm_fidelity");
+  const Place method = members.optional("method");
   members.no_others();
   const auto read_count = [](const Place& count, int& into, std::int64_t most) {
     if (!count.exists()) return;
@@ -43,6 +45,9 @@ void read_budget(const Place& place, calibrator::Budget& budget) {
   read_fidelity(fidelity, budget.fidelity);
   budget.confirm_fidelity = budget.fidelity;  // what is searched is what is confirmed, unless said
   read_fidelity(confirm_fidelity, budget.confirm_fidelity);
+  if (!method.exists()) return;
+  const auto index = method.one_of(calibrator::method_names, "method");
+  if (index) budget.method = static_cast<calibrator::Method>(*index);
 }
 
 void read_suspects(const Place& place, std::vector<std::string>& suspects) {
@@ -59,6 +64,24 @@ void read_suspects(const Place& place, std::vector<std::string>& suspects) {
       element.complain("this effect is named twice", "each effect once");
     }
   }
+}
+
+void read_extends(const Place& place, std::optional<calibrator::Extension>& extends) {
+  if (!place.exists()) return;
+  Members members(place);
+  const Place calibration = members.required("calibration", "the number of a calibration");
+  const Place diagnosis = members.optional("diagnosis");
+  const Place effect = members.required("effect", "the name of the effect that is added");
+  members.no_others();
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  calibrator::Extension read;
+  const auto id = calibration.exists() ? calibration.whole(1, most) : std::nullopt;
+  if (diagnosis.exists()) read.diagnosis = diagnosis.whole(1, most);
+  auto name = effect.exists() ? effect.text(200) : std::nullopt;
+  if (!id || !name) return;
+  read.calibration = *id;
+  read.effect = *std::move(name);
+  extends = std::move(read);
 }
 
 void read_name(const Place& place, std::string& name) {
@@ -138,6 +161,7 @@ Json print_measurement(const Measurement& measurement) {
   entry["value"] = print_value(measurement.value, measurement.unit);
   entry["unit"] = measurement.unit.symbol;
   entry["standard_error"] = print_value(measurement.standard_error, measurement.unit);
+  if (measurement.replicates > 0) entry["replicates"] = measurement.replicates;
   if (measurement.allowance != 0.0) {
     entry["allowance"] = print_value(measurement.allowance, measurement.unit);
   }
@@ -150,10 +174,14 @@ Json print_budget(const calibrator::Budget& budget) {
   const auto name = [](engine::Fidelity fidelity) {
     return engine::fidelity_names[static_cast<std::size_t>(fidelity)];
   };
-  return {{"evaluations", budget.evaluations},
-          {"batch", budget.batch},
-          {"fidelity", name(budget.fidelity)},
-          {"confirm_fidelity", name(budget.confirm_fidelity)}};
+  Json result{{"evaluations", budget.evaluations},
+              {"batch", budget.batch},
+              {"fidelity", name(budget.fidelity)},
+              {"confirm_fidelity", name(budget.confirm_fidelity)}};
+  if (budget.method != calibrator::Method::repose) {
+    result["method"] = calibrator::method_names[static_cast<std::size_t>(budget.method)];
+  }
+  return result;
 }
 
 }  // namespace
@@ -178,6 +206,7 @@ engine::Result<Calibration, Problems> parse_calibration(std::string_view text) {
   read_measurements(members.optional("measurements"), study);
   read_suspects(members.optional("suspects"), calibration.suspects);
   read_budget(members.optional("budget"), calibration.budget);
+  read_extends(members.optional("extends"), calibration.extends);
   const Place seed = members.optional("seed");
   if (seed.exists()) calibration.seed = seed.seed().value_or(1);
   members.no_others();
@@ -199,6 +228,11 @@ std::string print_calibration(const Calibration& calibration) {
     document["measurements"].push_back(print_measurement(measurement));
   }
   if (!calibration.suspects.empty()) document["suspects"] = calibration.suspects;
+  if (calibration.extends) {
+    Json& extends = document["extends"] = {{"calibration", calibration.extends->calibration},
+                                           {"effect", calibration.extends->effect}};
+    if (calibration.extends->diagnosis) extends["diagnosis"] = *calibration.extends->diagnosis;
+  }
   document["budget"] = print_budget(calibration.budget);
   document["seed"] = calibration.seed;
   return to_text(document, 2);

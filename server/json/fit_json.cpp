@@ -6,11 +6,10 @@
 #include <utility>
 
 #include "calibrator/search_space.hpp"
-#include "engine/catalogue.hpp"
 #include "engine/evaluate.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/key_json.hpp"
-#include "server/json/read_key.hpp"
+#include "server/json/parameters_json.hpp"
 
 namespace repose::server {
 
@@ -22,26 +21,6 @@ using calibrator::Measurement;
 using engine::Unit;
 
 namespace {
-
-/// The unit in which the author thinks of a parameter, the catalogue's where they named none.
-Unit unit_of(const Calibration& calibration, const engine::ParameterKey& key) {
-  const auto free = std::ranges::find(calibration.free, key, &FreeParameter::key);
-  if (free != calibration.free.end()) return free->unit;
-  const engine::ParameterInfo* info = engine::find_parameter(key.field);
-  return info != nullptr ? info->field->unit : Unit{};
-}
-
-Json print_set(const Calibration& calibration, const engine::ParameterSet& set) {
-  Json result = Json::array();
-  for (const auto& [key, value] : set) {
-    const Unit unit = unit_of(calibration, key);
-    Json entry = print_key(key);
-    entry["value"] = in_unit(value, unit);
-    entry["unit"] = unit.symbol;
-    result.push_back(std::move(entry));
-  }
-  return result;
-}
 
 Json print_parameters(const Calibration& calibration, const Fit& fit) {
   Json result = Json::array();
@@ -152,19 +131,6 @@ double number(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
-engine::ParameterSet read_set(const Json& json) {
-  engine::ParameterSet set;
-  for (const Json& entry : json) {
-    ProblemList problems;
-    Members members(Place(&entry, "", problems));
-    const auto named = read_key(members);
-    const auto unit = engine::unit::find(entry.at("unit").get<std::string>());
-    if (!named || !unit) throw std::invalid_argument("an unknown parameter or unit");
-    set.set(named->key, number(entry.at("value")) * unit->factor);
-  }
-  return set;
-}
-
 std::vector<calibrator::FittedParameter> read_parameters(const Calibration& calibration,
                                                          const Json& json) {
   std::vector<calibrator::FittedParameter> result;
@@ -265,7 +231,7 @@ calibrator::StopReason stop_named(const std::string& name) {
 
 Fit read_fit(const Calibration& calibration, const Json& json) {
   Fit fit;
-  fit.best = read_set(json.at("best"));
+  fit.best = read_parameter_set(json.at("best"));
   fit.parameters = read_parameters(calibration, json.at("parameters"));
   fit.directions = read_directions(json.at("directions"));
   fit.predictions = read_predictions(calibration, json.at("measurements"));
@@ -291,7 +257,7 @@ std::string print_fit(const Calibration& calibration, const Fit& fit) {
                       {"directions", print_directions(calibration, fit)},
                       {"offset", print_offset(calibration, fit)},
                       {"remarks", fit.remarks},
-                      {"best", print_set(calibration, fit.best)},
+                      {"best", print_parameter_set(calibration, fit.best)},
                       {"history", print_history(calibration, fit)},
                       {"seed", calibration.seed},
                       {"engine_version", engine::version()}};
@@ -316,7 +282,7 @@ std::string print_progress(const Calibration& calibration, const calibrator::Pro
                       {"misfit", number_or_null(progress.misfit)},
                       {"predicted", print_values(calibration, progress.predicted)},
                       {"z", Json(progress.z)},
-                      {"best", print_set(calibration, progress.best)}});
+                      {"best", print_parameter_set(calibration, progress.best)}});
 }
 
 }  // namespace repose::server

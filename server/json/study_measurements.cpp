@@ -57,10 +57,14 @@ std::optional<double> read_positive(const Place& place) {
   return std::nullopt;
 }
 
-/// The standard error in the measurement's unit. Never guessed.
-std::optional<double> read_standard_error(const Numbers& given, const std::string& observable) {
+/// The standard error in the measurement's unit, and how many repetitions it comes from. Never
+/// guessed.
+std::optional<double> read_standard_error(const Numbers& given,
+                                          const std::string& observable,
+                                          int& repetitions) {
   std::optional<std::int64_t> replicates;
   if (given.replicates.exists()) replicates = given.replicates.whole(1, 1'000'000);
+  if (replicates && *replicates > 1) repetitions = static_cast<int>(*replicates);
   if (given.standard_error.exists() && given.standard_deviation.exists()) {
     given.standard_deviation.complain("one uncertainty is enough",
                                       "standard_error or standard_deviation, not both");
@@ -117,7 +121,7 @@ bool read_numbers(const Numbers& given,
   const auto value = given.value.exists() ? given.value.number() : std::nullopt;
   const auto unit =
       given.unit.exists() ? read_unit(given.unit, observable.unit, name) : std::nullopt;
-  const auto error = read_standard_error(given, name);
+  const auto error = read_standard_error(given, name, measurement.replicates);
   auto allowance = given.allowance.exists() ? given.allowance.number() : std::optional(0.0);
   if (allowance && *allowance < 0.0) {
     given.allowance.complain("an allowance is not negative", "0 or more");

@@ -39,9 +39,9 @@ Vec3 unit(const Vec3& v) { return (1.0 / std::max(norm(v), 1e-30)) * v; }
 Colour mix(const Colour& a, const Colour& b, double share) { return (1.0 - share) * a + share * b; }
 
 /// A grain's own colour: from pale to deep straw by its number, so that neighbours can be told
-/// apart.
-Colour grain_colour(std::uint64_t id) {
-  std::uint64_t bits = (id + 1) * 0x9E3779B97F4A7C15ULL;  // golden ratio: spreads small numbers
+/// apart and a clump is seen as one.
+Colour grain_colour(std::uint64_t body) {
+  std::uint64_t bits = (body + 1) * 0x9E3779B97F4A7C15ULL;  // golden ratio: spreads small numbers
   bits ^= bits >> 29U;
   bits *= 0xBF58476D1CE4E5B9ULL;
   const double share = static_cast<double>(bits >> 40U) / static_cast<double>(1U << 24U);
@@ -225,7 +225,7 @@ class Painter {
   [[nodiscard]] Colour grain_light(int x, int y, const Fragment& f) const {
     const auto& grain = frame_.grains[static_cast<std::size_t>(f.what - first_grain)];
     const double lit = shadow_.lit(place(x, y, f), 0.25 * diameter_);
-    return light_.shade(grain_colour(grain.id), {f.nx, f.ny, f.nz}, open(x, y), lit);
+    return light_.shade(grain_colour(grain.body), {f.nx, f.ny, f.nz}, open(x, y), lit);
   }
 
   [[nodiscard]] Colour wall_light(int x, int y, const Fragment& f) const {

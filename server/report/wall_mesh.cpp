@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace repose::server {
 
@@ -20,7 +22,7 @@ struct Place {
   double s, z;
 };
 
-/// A piece of a wall's curve inside the surroundings of the bed.
+/// A piece of a wall's curve inside the bounds.
 struct Piece {
   Place from, to;
   bool from_is_end, to_is_end;  ///< not where it was cut
@@ -57,13 +59,15 @@ bool continues(std::span<const FrameWall> walls, const FrameWall& self, Place en
   });
 }
 
-/// Collects patches and edges; knows the frame and the viewer.
+/// Corners as a key; equal corners have equal bits, as a mesh's are welded.
+using Key = std::array<double, 3>;
+Key key(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+/// Collects patches and edges; knows the frame and where walls are cut.
 class MeshBuilder {
  public:
-  MeshBuilder(const engine::Frame& frame, const ViewAxes& axes)
-      : frame_(frame), axes_(axes), bed_(bounds_of(frame.grains)) {
-    const Vec3 size = bed_.size();
-    margin_ = 0.2 * std::max({size.x, size.y, size.z});
+  MeshBuilder(const engine::Frame& frame, const Bounds& bounds)
+      : frame_(frame), bounds_(bounds), bed_(bounds_of(frame.grains)) {
     if (frame.period.y > 0.0) {
       // Sides of a periodic apparatus: whole periods from 0 or half periods about it.
       const bool about_zero = bed_.lower.y < -0.25 * frame.period.y;
@@ -75,21 +79,20 @@ class MeshBuilder {
     }
   }
 
-  WallMesh build() {
+  WallSurfaces build() {
     for (const FrameWall& wall : frame_.walls) {
-      if (wall.revolved) revolve(wall);
-      if (!wall.revolved) extrude(wall);
+      if (!wall.triangles.empty()) {
+        facet(wall);
+      } else if (wall.revolved) {
+        revolve(wall);
+      } else {
+        extrude(wall);
+      }
     }
-    return std::move(mesh_);
+    return std::move(surfaces_);
   }
 
  private:
-  void add(const WallPatch& patch) {
-    const Vec3 normal = patch.normals[0] + patch.normals[2];
-    const bool outside_is_seen = dot(normal, axes_.toward) > 0.0;
-    (outside_is_seen ? mesh_.before : mesh_.behind).push_back(patch);
-  }
-
   /// Unit normal (s, z) of a piece that points away from the place (s, z).
   static Place away(const Piece& piece, Place centre) {
     const double ds = piece.to.s - piece.from.s, dz = piece.to.z - piece.from.z;
@@ -100,12 +103,31 @@ class MeshBuilder {
     return {sign * dz / length, -sign * ds / length};
   }
 
+  /// Triangles stand as they are; their edges are those of one triangle only.
+  void facet(const FrameWall& wall) {
+    std::map<std::pair<Key, Key>, int> uses;
+    for (const engine::Triangle& t : wall.triangles) {
+      const Vec3 across = cross(t[1] - t[0], t[2] - t[0]);
+      const double side = dot(across, t[0] - bed_.centre());
+      const Vec3 n = ((side < 0.0 ? -1.0 : 1.0) / std::max(norm(across), 1e-30)) * across;
+      surfaces_.patches.push_back({{t[0], t[1], t[2], t[2]}, {n, n, n, n}});
+      for (std::size_t k = 0; k < 3; ++k) {
+        ++uses[std::minmax({key(t.at(k)), key(t.at((k + 1) % 3))})];
+      }
+    }
+    for (const auto& [ends, count] : uses) {
+      const auto& [a, b] = ends;
+      if (count == 1) surfaces_.edges.push_back({{a[0], a[1], a[2]}, {b[0], b[1], b[2]}});
+    }
+  }
+
   void revolve(const FrameWall& wall) {
-    const double reach_x = std::max(bed_.upper.x - wall.centre_x, wall.centre_x - bed_.lower.x);
-    const double reach_y = std::max(bed_.upper.y - wall.centre_y, wall.centre_y - bed_.lower.y);
-    const auto piece = cut(wall,
-                           {0.0, bed_.lower.z - margin_},
-                           {std::max(reach_x, reach_y) + margin_, bed_.upper.z + margin_});
+    const double reach_x =
+        std::max(bounds_.upper.x - wall.centre_x, wall.centre_x - bounds_.lower.x);
+    const double reach_y =
+        std::max(bounds_.upper.y - wall.centre_y, wall.centre_y - bounds_.lower.y);
+    const auto piece =
+        cut(wall, {0.0, bounds_.lower.z}, {std::max(reach_x, reach_y), bounds_.upper.z});
     if (!piece) return;
     const Place normal = away(*piece, {0.0, bed_.centre().z});
     const auto point = [&](Place p, int slice) {
@@ -119,35 +141,34 @@ class MeshBuilder {
     };
     for (int i = 0; i < slices; ++i) {
       const Vec3 n = direction(i), next = direction(i + 1);
-      add({{point(piece->from, i),
-            point(piece->from, i + 1),
-            point(piece->to, i + 1),
-            point(piece->to, i)},
-           {n, next, next, n}});
+      surfaces_.patches.push_back({{point(piece->from, i),
+                                    point(piece->from, i + 1),
+                                    point(piece->to, i + 1),
+                                    point(piece->to, i)},
+                                   {n, next, next, n}});
       if (is_rim(wall, piece->from, piece->from_is_end)) {
-        mesh_.edges.push_back({point(piece->from, i), point(piece->from, i + 1)});
+        surfaces_.edges.push_back({point(piece->from, i), point(piece->from, i + 1)});
       }
       if (is_rim(wall, piece->to, piece->to_is_end)) {
-        mesh_.edges.push_back({point(piece->to, i), point(piece->to, i + 1)});
+        surfaces_.edges.push_back({point(piece->to, i), point(piece->to, i + 1)});
       }
     }
   }
 
   void extrude(const FrameWall& wall) {
-    const auto piece = cut(wall,
-                           {bed_.lower.x - margin_, bed_.lower.z - margin_},
-                           {bed_.upper.x + margin_, bed_.upper.z + margin_});
+    const auto piece =
+        cut(wall, {bounds_.lower.x, bounds_.lower.z}, {bounds_.upper.x, bounds_.upper.z});
     if (!piece) return;
     const Place n = away(*piece, {bed_.centre().x, bed_.centre().z});
     const Vec3 normal{n.s, 0.0, n.z};
     const auto point = [&](Place p, double y) { return Vec3{p.s, y, p.z}; };
     const Vec3 a = point(piece->from, near_y_), b = point(piece->to, near_y_);
     const Vec3 c = point(piece->to, far_y_), d = point(piece->from, far_y_);
-    add({{a, b, c, d}, {normal, normal, normal, normal}});
-    mesh_.edges.push_back({a, b});
-    mesh_.edges.push_back({d, c});
-    if (is_rim(wall, piece->from, piece->from_is_end)) mesh_.edges.push_back({a, d});
-    if (is_rim(wall, piece->to, piece->to_is_end)) mesh_.edges.push_back({b, c});
+    surfaces_.patches.push_back({{a, b, c, d}, {normal, normal, normal, normal}});
+    surfaces_.edges.push_back({a, b});
+    surfaces_.edges.push_back({d, c});
+    if (is_rim(wall, piece->from, piece->from_is_end)) surfaces_.edges.push_back({a, d});
+    if (is_rim(wall, piece->to, piece->to_is_end)) surfaces_.edges.push_back({b, c});
   }
 
   [[nodiscard]] bool is_rim(const FrameWall& wall, Place end, bool is_end) const {
@@ -155,18 +176,71 @@ class MeshBuilder {
   }
 
   const engine::Frame& frame_;
-  const ViewAxes& axes_;
+  const Bounds& bounds_;
   Bounds bed_;
-  double margin_ = 0.0;                // m, round the bed
   double near_y_ = 0.0, far_y_ = 0.0;  // m, sides of what is swept along y
-  WallMesh mesh_;
+  WallSurfaces surfaces_;
 };
+
+/// Puts the ends of a wall that has some into a box.
+void include_ends(Bounds& bounds, const FrameWall& wall) {
+  for (const engine::Triangle& triangle : wall.triangles) {
+    for (const Vec3& corner : triangle) bounds.include(corner);
+  }
+  if (!wall.triangles.empty()) return;
+  const Vec3 middle = bounds.centre();
+  const auto include = [&](double s, double z) {
+    if (std::abs(s) >= engine::endless || std::abs(z) >= engine::endless) return;
+    if (!wall.revolved) return bounds.include({s, middle.y, z});
+    bounds.include({wall.centre_x - s, wall.centre_y - s, z});
+    bounds.include({wall.centre_x + s, wall.centre_y + s, z});
+  };
+  include(wall.from_s, wall.from_z);
+  include(wall.to_s, wall.to_z);
+}
+
+/// The box round the bed with a fifth of its largest side about it.
+Bounds widened_bed(const engine::Frame& frame) {
+  Bounds bounds = bounds_of(frame.grains);
+  const Vec3 size = bounds.size();
+  const double margin = 0.2 * std::max({size.x, size.y, size.z});
+  const Vec3 lower = bounds.lower, upper = bounds.upper;
+  bounds.include(lower, margin);
+  bounds.include(upper, margin);
+  return bounds;
+}
 
 }  // namespace
 
+Bounds surroundings(const engine::Frame& frame) {
+  Bounds bounds = widened_bed(frame);
+  for (const FrameWall& wall : frame.walls) {
+    if (wall.closed) include_ends(bounds, wall);
+  }
+  return bounds;
+}
+
+Bounds whole_apparatus(const engine::Frame& frame) {
+  Bounds bounds = widened_bed(frame);
+  for (const FrameWall& wall : frame.walls) include_ends(bounds, wall);
+  return bounds;
+}
+
+WallSurfaces wall_surfaces(const engine::Frame& frame, const Bounds& bounds) {
+  if (frame.grains.empty()) return {};
+  return MeshBuilder(frame, bounds).build();
+}
+
 WallMesh wall_mesh(const engine::Frame& frame, const ViewAxes& axes) {
   if (frame.grains.empty()) return {};
-  return MeshBuilder(frame, axes).build();
+  WallSurfaces surfaces = wall_surfaces(frame, surroundings(frame));
+  WallMesh mesh;
+  for (const WallPatch& patch : surfaces.patches) {
+    const bool outside_is_seen = dot(patch.normals[0] + patch.normals[2], axes.toward) > 0.0;
+    (outside_is_seen ? mesh.before : mesh.behind).push_back(patch);
+  }
+  mesh.edges = std::move(surfaces.edges);
+  return mesh;
 }
 
 }  // namespace repose::server

@@ -172,6 +172,8 @@ std::string stop_sentence(StopReason stop) {
       return "The search was cancelled before it was finished.";
     case StopReason::failed:
       return "The search stopped because too few evaluations succeeded to learn from.";
+    case StopReason::converged:
+      return "The search stopped because its method had nothing more to try.";
   }
   return {};
 }

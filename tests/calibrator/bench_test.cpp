@@ -1,4 +1,4 @@
-/// The analytic bench of calibration.md 6.3 with the asks of its section 8. A few seeds are run
+/// The analytic bench with its asks. A few seeds are run
 /// always, twenty under [slow]. The fast asks are those of the twenty: a method that meets them on
 /// the whole can fail one seed in ten, so the fast set allows one.
 

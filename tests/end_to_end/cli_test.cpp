@@ -144,6 +144,25 @@ TEST_CASE("the engine's speed is measured and told as one JSON object", "[end_to
   CHECK(repose("bench engine --scene silo").exit_code == 2);
 }
 
+TEST_CASE("the calibrator's need is told as JSON beside that of a baseline", "[end_to_end]") {
+  const Ran ran = repose("bench calibrator --case A --seeds 1 --methods repose,isres --json");
+  CHECK(ran.exit_code == 0);
+  const auto answer = nlohmann::json::parse(ran.output);
+  CHECK(answer["case"] == "A");
+  REQUIRE(answer["methods"].size() == 2);
+  CHECK(answer["methods"][0]["name"] == "repose");
+  CHECK(answer["methods"][0]["median"] <= 40);
+  CHECK(answer["methods"][0]["p90"] == answer["methods"][0]["median"]);
+  CHECK(answer["methods"][0]["share_within_40"] == 1.0);
+  CHECK(answer["methods"][1]["name"] == "isres");
+  const Ran two = repose("bench calibrator --case A --case D --seeds 1 --methods bobyqa --json");
+  const auto list = nlohmann::json::parse(two.output);
+  REQUIRE(list.size() == 2);
+  CHECK(list[1]["methods"][0]["median"].is_null());  // eight parameters: never within 400
+  CHECK(repose("bench calibrator --case F").exit_code == 2);
+  CHECK(repose("bench calibrator --methods powell").exit_code == 2);
+}
+
 TEST_CASE("help and version are no errors", "[end_to_end]") {
   CHECK(repose("--help").exit_code == 0);
   CHECK(repose("evaluate --help").exit_code == 0);

@@ -175,6 +175,25 @@ TEST_CASE("frames change nothing in the answer", "[engine]") {
   CHECK(observations(evaluate(t, run))[0].value == observations(evaluate(t))[0].value);
 }
 
+TEST_CASE("the kettle counts grains whose centre, or whose whole, is below the rim", "[engine]") {
+  Trial t = small_trial("kettle");
+  const double height = t.experiment.settings.at("height");
+  int centres = 0, wholes = 0;
+  Run run;
+  run.frames = [&](const Frame& frame) {
+    for (const FrameGrain& grain : frame.grains) {
+      if (frame.stage != "filled" || grain.centre.z < 0.0) continue;
+      if (grain.centre.z < height) ++centres;
+      if (grain.centre.z + grain.radius < height) ++wholes;
+    }
+  };
+  const double by_centre = observations(evaluate(t, run))[0].value;
+  t.experiment.settings["rim"] = 1.0;
+  const double by_whole = observations(evaluate(t))[0].value;
+  CHECK(wholes < centres);
+  CHECK(by_whole / by_centre == Approx(static_cast<double>(wholes) / centres));
+}
+
 TEST_CASE("harder friction stands steeper and packs looser", "[engine][slow]") {
   const auto measure = [](std::string_view name, double friction) {
     double sum = 0.0;

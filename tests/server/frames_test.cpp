@@ -1,5 +1,6 @@
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -11,47 +12,24 @@
 
 #include "server/report/frame_files.hpp"
 #include "server/report/image.hpp"
+#include "tests/support/vtk_reader.hpp"
 
+using repose::engine::Frame;
 using repose::engine::FrameGrain;
+using repose::engine::FrameWall;
+using repose::engine::Vec3;
 using repose::server::base64;
 using repose::server::FrameFiles;
 using repose::server::print_vtp;
+using repose::server::print_walls_vtp;
+using repose::tests::DataSet;
+using repose::tests::PolyData;
+using repose::tests::read_collection;
+using repose::tests::read_poly_data;
 
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string decoded(std::string_view text) {
-  constexpr std::string_view letters =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  unsigned group = 0, bits = 0;
-  for (const char c : text) {
-    if (c == '=') break;
-    group = group << 6U | static_cast<unsigned>(letters.find(c));
-    bits += 6;
-    if (bits < 8) continue;
-    bits -= 8;
-    bytes += static_cast<char>(group >> bits & 255U);
-  }
-  return bytes;
-}
-
-/// The numbers of one array of a .vtp text, after the count of bytes before them.
-template <class T>
-std::vector<T> read_array(const std::string& vtp, const std::string& name) {
-  const std::size_t tag = vtp.find("Name=\"" + name + "\"");
-  REQUIRE(tag != std::string::npos);
-  const std::size_t from = vtp.find('>', tag) + 1;
-  const std::string bytes = decoded(std::string_view(vtp).substr(from, vtp.find('<', from) - from));
-  std::uint32_t size = 0;
-  REQUIRE(bytes.size() >= sizeof size);
-  std::memcpy(&size, bytes.data(), sizeof size);
-  REQUIRE(bytes.size() == sizeof size + size);
-  std::vector<T> values(size / sizeof(T));
-  if (size > 0) std::memcpy(values.data(), bytes.data() + sizeof size, size);
-  return values;
-}
 
 std::string read_file(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -68,43 +46,119 @@ struct TemporaryFolder {
   ~TemporaryFolder() { fs::remove_all(path); }
 };
 
-const std::vector<FrameGrain> grains{{{0.1, 0.2, 0.3}, {1.0, -2.0, 3.0}, 0.004, 11},
-                                     {{0.4, 0.5, 0.6}, {0.0, 0.0, -9.0}, 0.005, 4294967296}};
+const std::vector<FrameGrain> grains{{{0.1, 0.2, 0.3}, {1.0, -2.0, 3.0}, 0.004, 11, 11},
+                                     {{0.4, 0.5, 0.6}, {0.0, 0.0, -9.0}, 0.005, 13, 11}};
+constexpr Vec3 down{0.0, 0.0, -9.81};
+
+Frame frame_with(const std::vector<FrameWall>& walls, const Vec3& period = {}) {
+  return {"running", 0.25, down, period, grains, walls};
+}
 
 }  // namespace
 
 TEST_CASE("a .vtp file reads back to the grains it was written from", "[server]") {
-  const std::string vtp = print_vtp({"running", 0.25, {0, 0, -9.81}, {}, grains, {}});
-  CHECK(read_array<double>(vtp, "Points") == std::vector{0.1, 0.2, 0.3, 0.4, 0.5, 0.6});
-  CHECK(read_array<double>(vtp, "velocity") == std::vector{1.0, -2.0, 3.0, 0.0, 0.0, -9.0});
-  CHECK(read_array<double>(vtp, "radius") == std::vector{0.004, 0.005});
-  CHECK(read_array<std::int64_t>(vtp, "id") == std::vector<std::int64_t>{11, 4294967296});
-  CHECK(read_array<std::int64_t>(vtp, "connectivity") == std::vector<std::int64_t>{0, 1});
-  CHECK(read_array<std::int64_t>(vtp, "offsets") == std::vector<std::int64_t>{1, 2});
-  CHECK(vtp.find("NumberOfPoints=\"2\" NumberOfVerts=\"2\"") != std::string::npos);
-  CHECK(vtp.find(">0.25<") != std::string::npos);
+  const PolyData data = read_poly_data(print_vtp(frame_with({})));
+  CHECK(data.time == 0.25);
+  CHECK(data.points == std::vector{0.1, 0.2, 0.3, 0.4, 0.5, 0.6});
+  CHECK(data.reals.at("velocity") == std::vector{1.0, -2.0, 3.0, 0.0, 0.0, -9.0});
+  CHECK(data.reals.at("radius") == std::vector{0.004, 0.005});
+  CHECK(data.whole.at("id") == std::vector<std::int64_t>{11, 13});
+  CHECK(data.whole.at("body") == std::vector<std::int64_t>{11, 11});
+  CHECK(data.verts == std::vector<std::vector<std::int64_t>>{{0}, {1}});
+  CHECK(data.polys.empty());
 }
 
-TEST_CASE("a frame without grains is still a .vtp file", "[server]") {
-  const std::string vtp = print_vtp({"running", 0.0, {}, {}, {}, {}});
-  CHECK(read_array<double>(vtp, "Points").empty());
+TEST_CASE("a frame without grains is still a .vtp file, of grains and of walls", "[server]") {
+  const Frame empty{"running", 0.0, {}, {}, {}, {}};
+  CHECK(read_poly_data(print_vtp(empty)).points.empty());
+  CHECK(read_poly_data(print_walls_vtp(empty)).points.empty());
 }
 
-TEST_CASE("the index names every frame with its time and stages have a picture", "[server]") {
+TEST_CASE("walls stand in their .vtp file where they are, as polygons", "[server]") {
+  const FrameWall tube{.revolved = true, .from_s = 2.0, .to_s = 2.0, .to_z = 5.0};
+  const FrameWall floor{.from_s = -1.0, .to_s = 1.0};
+  FrameWall facet;
+  facet.triangles = {{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}}};
+  SECTION("a tube as rectangles round its axis, whole") {
+    const PolyData data = read_poly_data(print_walls_vtp(frame_with({tube})));
+    REQUIRE(data.polys.size() > 50);
+    for (const auto& cell : data.polys) CHECK(cell.size() == 4);
+    double lowest = 9.0, highest = -9.0;
+    for (std::size_t i = 0; i < data.points.size(); i += 3) {
+      CHECK(std::hypot(data.points[i], data.points[i + 1]) == Approx(2.0));
+      lowest = std::min(lowest, data.points[i + 2]);
+      highest = std::max(highest, data.points[i + 2]);
+    }
+    CHECK(lowest == Approx(0.0));
+    CHECK(highest == Approx(5.0));
+  }
+  SECTION("what runs along y as long as the period") {
+    const PolyData data = read_poly_data(print_walls_vtp(frame_with({floor}, {0.0, 0.7, 0.0})));
+    CHECK(data.points == std::vector{-1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.7, 0.0, -1.0, 0.7, 0.0});
+  }
+  SECTION("a plane without end cut about the bed") {
+    const FrameWall endless{.from_s = -repose::engine::endless,
+                            .from_z = 0.25,
+                            .to_s = repose::engine::endless,
+                            .to_z = 0.25};
+    const PolyData data = read_poly_data(print_walls_vtp(frame_with({endless}, {0.0, 0.7, 0.0})));
+    REQUIRE(data.polys.size() == 1);
+    CHECK(data.points[0] < 0.1);
+    CHECK(data.points[0] > -0.2);
+  }
+  SECTION("a facet of a mesh as a triangle") {
+    const PolyData data = read_poly_data(print_walls_vtp(frame_with({facet})));
+    CHECK(data.polys == std::vector<std::vector<std::int64_t>>{{0, 1, 2}});
+    CHECK(data.points == std::vector{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0});
+  }
+}
+
+TEST_CASE("the index names every frame with its time and its walls, stages have a picture",
+          "[server]") {
   const TemporaryFolder folder;
-  FrameFiles files(folder.path / "deep" / "frames");
-  files.write({"running", 0.0, {0, 0, -9.81}, {}, grains, {}});
-  files.write({"hopper filled", 0.5, {0, 0, -9.81}, {}, grains, {}});
+  FrameFiles files(folder.path / "deep" / "frames", "kettle");
+  FrameWall tube{.revolved = true, .from_s = 2.0, .to_s = 2.0, .to_z = 5.0};
+  const std::vector<FrameWall> resting{tube};
+  tube.from_z = 1.0;
+  tube.to_z = 6.0;
+  const std::vector<FrameWall> lifted{tube};
+  files.write({"running", 0.0, down, {}, grains, resting});
+  files.write({"running", 0.5, down, {}, grains, resting});
+  files.write({"hopper filled", 1.0, down, {}, grains, lifted});
   files.write_index();
   const fs::path written = folder.path / "deep" / "frames";
-  const std::string index = read_file(written / "frames.pvd");
-  CHECK(index.find("timestep=\"0\" part=\"0\" file=\"frame_00000.vtp\"") != std::string::npos);
-  CHECK(index.find("timestep=\"0.5\" part=\"0\" file=\"frame_00001.vtp\"") != std::string::npos);
-  CHECK(fs::exists(written / "frame_00000.vtp"));
-  CHECK(fs::exists(written / "frame_00001.vtp"));
+  const auto sets = read_collection(read_file(written / "frames.pvd"));
+  REQUIRE(sets.size() == 6);
+  for (const DataSet& set : sets) {
+    INFO(set.file);
+    const PolyData data = read_poly_data(read_file(written / set.file));
+    CHECK(data.polys.empty() == (set.part == 0));
+  }
+  CHECK(sets[0].file == "frame_00000.vtp");
+  CHECK(sets[2].file == "frame_00001.vtp");
+  CHECK(sets[2].time == 0.5);
+  CHECK(sets[1].file == "walls_00000.vtp");
+  CHECK(sets[3].file == "walls_00000.vtp");  // they have not moved
+  CHECK(sets[5].file == "walls_00002.vtp");
   CHECK(read_file(written / "01_hopper_filled.png").substr(1, 3) == "PNG");
-  CHECK(files.frames() == 2);
+  CHECK(files.frames() == 3);
   CHECK(files.pictures() == 1);
+  const std::string page = read_file(written / "play.html");
+  CHECK(page.find("<h1>kettle</h1>") != std::string::npos);
+  CHECK(page.find("{{") == std::string::npos);
+}
+
+TEST_CASE("the reader of VTK files refuses what is broken", "[server]") {
+  const std::string good = print_vtp(frame_with({}));
+  const auto with = [&good](const std::string& from, const std::string& to) {
+    std::string bad = good;
+    return bad.replace(bad.find(from), from.size(), to);
+  };
+  CHECK_THROWS(read_poly_data(with("</Verts>", "")));
+  CHECK_THROWS(read_poly_data(with("NumberOfVerts=\"2\"", "NumberOfVerts=\"3\"")));
+  CHECK_THROWS(read_poly_data(with("NumberOfPoints=\"2\"", "NumberOfPoints=\"1\"")));
+  CHECK_THROWS(
+      read_poly_data(with("type=\"Float64\" Name=\"radius\"", "type=\"Float32\" Name=\"radius\"")));
 }
 
 TEST_CASE("a file that cannot be written is named in the error", "[server]") {

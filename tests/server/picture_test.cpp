@@ -77,10 +77,11 @@ TEST_CASE("a grain is straw coloured and lit from above", "[server]") {
   CHECK(high[0] > low[0] + 30);
 }
 
-TEST_CASE("grains differ in colour by their number and keep it from frame to frame", "[server]") {
-  const Image one = draw({{{}, {}, 0.01, 1}}, down);
-  const Image same = draw({{{0.5, 0.5, 0.5}, {}, 0.01, 1}}, down);
-  const Image other = draw({{{}, {}, 0.01, 2}}, down);
+TEST_CASE("grains differ in colour by body, members of a clump do not, frame by frame",
+          "[server]") {
+  const Image one = draw({{{}, {}, 0.01, 1, 1}}, down);
+  const Image same = draw({{{0.5, 0.5, 0.5}, {}, 0.01, 2, 1}}, down);
+  const Image other = draw({{{}, {}, 0.01, 2, 2}}, down);
   CHECK(one.pixel(100, 80)[0] == Approx(same.pixel(100, 80)[0]).margin(1));
   CHECK(one.pixel(100, 80)[2] != other.pixel(100, 80)[2]);
 }
@@ -127,6 +128,30 @@ TEST_CASE("a wall before the bed is glass and a wall behind it is solid", "[serv
   CHECK(seen[3] == 255);
   CHECK(seen[0] > seen[2] + 20);  // still the grain's colour, not the wall's
   CHECK(middle_where(walled, opaque).count > middle_where(bare, opaque).count);
+}
+
+TEST_CASE("facets of a mesh are drawn like any wall", "[server]") {
+  const std::vector<FrameGrain> grains{{{0.0, 0.0, 0.01}, {}, 0.01, 1}};
+  FrameWall back;
+  back.triangles = {{Vec3{-0.03, 0.02, 0.0}, Vec3{0.03, 0.02, 0.0}, Vec3{0.0, 0.02, 0.04}}};
+  const auto count = [](const Image& image) { return middle_where(image, opaque).count; };
+  const Image bare = draw(grains, down), walled = draw(grains, down, {back});
+  // A sphere that fills a height of 20 mm against a triangle 60 mm wide.
+  CHECK(count(bare) == Approx(3.14159 * 73.6 * 73.6).epsilon(0.02));
+  CHECK(walled.pixel(100, 80)[3] == 255);
+  const auto grey =
+      middle_where(walled, [](const std::uint8_t* p) { return p[3] > 127 && p[2] > p[0]; });
+  CHECK(grey.count > 1000.0);
+}
+
+TEST_CASE("of a drum the whole mantle is drawn, also far above the bed", "[server]") {
+  const std::vector<FrameGrain> grains{{{0.0, 0.0, 0.01}, {}, 0.01, 1}};
+  FrameWall lid{.from_s = -0.05, .from_z = 0.2, .to_s = 0.05, .to_z = 0.2};
+  const Image cut = draw(grains, down, {lid});
+  lid.closed = true;
+  const Image whole = draw(grains, down, {lid});
+  const auto count = [](const Image& image) { return middle_where(image, opaque).count; };
+  CHECK(count(cut) > 2.0 * count(whole));  // the grain is drawn smaller beside all of the mantle
 }
 
 TEST_CASE("a frame without grains gives an empty page", "[server]") {

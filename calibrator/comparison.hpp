@@ -1,0 +1,48 @@
+/// Comparison: the confirmed model against every measurement: how far off, with which share of each
+/// uncertainty, along which condition, and whether that is more than chance.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrator/calibration.hpp"
+#include "calibrator/diagnosis/tolerance.hpp"
+#include "calibrator/fit.hpp"
+
+namespace repose::calibrator {
+
+/// One measurement against its prediction; all SI.
+struct ComparedMeasurement {
+  std::size_t measurement = 0;
+  double predicted = 0.0;
+  double difference = 0.0;         ///< predicted less measured
+  double measurement_error = 0.0;  ///< standard error and allowance of the laboratory
+  double tolerance = 0.0;          ///< how closely a code's word is taken
+  double simulation_error = 0.0;   ///< of the mean of the confirming replicates
+  double emulator_error = 0.0;  ///< of what the emulator had promised; not in z where runs confirm
+  double z = 0.0;               ///< difference over the first three together
+};
+
+/// How the difference of one observable changes with a condition of its experiment.
+struct ResidualTrend {
+  std::string observable;  ///< "drop.restitution"
+  std::string setting;     ///< "height"
+  double slope = 0.0;      ///< of z per factor e of the setting (per unit where it crosses zero)
+  double z = 0.0;          ///< of the slope
+};
+
+struct Comparison {
+  std::vector<ComparedMeasurement> rows;  ///< in the order of the calibration
+  std::vector<ResidualTrend> trends;
+  double misfit = 0.0;    ///< of the fitted ones, shared tolerances accounted for
+  double freedom = 0.0;   ///< fitted measurements less learnt directions
+  double p = 1.0;         ///< that a right model misses by so much; 1 where nothing is left to test
+  double fitted_z = 0.0;  ///< root mean square
+  double held_out_z = 0.0;             ///< NaN where none is held out
+  std::vector<std::string> sentences;  ///< where it is off, or that it fits
+};
+
+Comparison compare(const Calibration& calibration, const Fit& fit, const Tolerances& stated = {});
+
+}  // namespace repose::calibrator

@@ -1,0 +1,55 @@
+/// diagnose(): what does a calibrated model lack?
+///
+///   1. the calibration's runs, and some around the best set, make an emulator of the model
+///   2. probes: every suspect at 0.8 of its strong value, twice
+///   3. screen: scores of suspects, and of excuses (an apparatus is off, or off along a condition),
+///      with their joint null; nothing beyond the 5 % of chance: the model is adequate
+///   4. else the three best suspects are refitted with all parameters, in designs that shrink
+///   5. verdict by deviance against the best excuse; pairs where no single suspect fits
+///
+/// Source of the rules' error rates: 7.1 of the acceptance tests, tests/calibrator/diagnosis.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "calibrator/calibration.hpp"
+#include "calibrator/diagnosis/diagnosis.hpp"
+#include "calibrator/diagnosis/tolerance.hpp"
+#include "calibrator/evaluator.hpp"
+#include "calibrator/fit.hpp"
+
+namespace repose::calibrator {
+
+struct DiagnosisQuestion {
+  const Calibration& calibration;  ///< outlives the question, as the fit does
+  const Fit& fit;
+  std::vector<Suspect> suspects;
+  Eigen::MatrixXd covariance;  ///< of all measurements, SI: standard errors and tolerances
+  Eigen::VectorXd sizes;       ///< SI: what 100 % of each measurement is
+  Eigen::VectorXd freedom;     ///< of each standard error; infinite where it is known
+};
+
+/// The question with the catalogue's suspects and the stated tolerances.
+DiagnosisQuestion question_of(const Calibration& calibration,
+                              const Fit& fit,
+                              const Tolerances& stated = {});
+
+struct DiagnosisProgress {
+  std::string stage;  ///< "anchor", "probe", "refit NAME", "pair NAME, NAME"
+  int evaluations_done = 0;
+};
+using DiagnosisObserver = std::function<void(const DiagnosisProgress&)>;
+
+/// Pure, as calibrate() is: a resumed diagnosis is a replay. Nothing where it was asked to stop:
+/// runs that were cut short are no evidence.
+std::optional<Diagnosis> diagnose(const DiagnosisQuestion& question,
+                                  const Evaluator& evaluator,
+                                  std::stop_token stop = {},
+                                  const DiagnosisObserver& observer = {});
+
+}  // namespace repose::calibrator

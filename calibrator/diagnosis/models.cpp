@@ -1,0 +1,124 @@
+#include "calibrator/diagnosis/models.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calibrator/diagnosis/screen.hpp"
+
+namespace repose::calibrator {
+namespace {
+
+using Eigen::Index;
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+constexpr double prior_deviation = 0.6;     // of a free parameter, about the middle of its range
+constexpr double strength_deviation = 1.5;  // of a strength, about zero
+constexpr double threshold = 3.84;          // 95 % of chi-squared with one degree of freedom
+
+}  // namespace
+
+Models::Models(const DiagnosisQuestion& question, const SuiteRuns& runs)
+    : question_(question), runs_(runs) {
+  const TrendEmulator emulator = learn({});
+  const auto& measurements = question.calibration.measurements;
+  for (std::size_t j = 0; j < measurements.size(); ++j) {
+    const auto index = static_cast<Index>(j);
+    if (measurements[j].role == Role::fit && emulator.knows(index)) fitted_.push_back(index);
+  }
+  targets_.resize(static_cast<Index>(fitted_.size()));
+  for (Index i = 0; i < targets_.size(); ++i) {
+    const auto j = static_cast<std::size_t>(fitted_[static_cast<std::size_t>(i)]);
+    // Targets are at the fidelity of the search.
+    const double offset = j < question.fit.offset.size() ? question.fit.offset[j] : 0.0;
+    targets_(i) = measurements[j].value - offset;
+  }
+}
+
+TrendEmulator Models::learn(const Additions& on) const {
+  const SuiteRuns::Table table = runs_.table(on);
+  Vector scale = Vector::Ones(table.inputs.cols());
+  scale.tail(static_cast<Index>(on.size())).setConstant(largest_strength);
+  return {table.inputs, table.outputs, std::move(scale)};
+}
+
+Predictor Models::predictor(const TrendEmulator& emulator) const {
+  return {[this, &emulator](const Vector& x) -> Vector { return emulator.mean(x)(fitted_); },
+          [this, &emulator](const Vector& x) -> Matrix {
+            return emulator.jacobian(x)(fitted_, Eigen::all);
+          }};
+}
+
+Matrix Models::covariance(const TrendEmulator& emulator, const Vector& at) const {
+  Matrix result = question_.covariance(fitted_, fitted_);
+  result.diagonal() += emulator.variance(at)(fitted_);
+  return result;
+}
+
+ModelSpace Models::space(const Additions& on) const {
+  const auto d = static_cast<Index>(runs_.space().dimensions());
+  const Index all = d + static_cast<Index>(on.size());
+  ModelSpace space{Vector::Zero(all),
+                   Vector::Ones(all),
+                   Vector::Constant(all, 0.5),
+                   Vector::Constant(all, 1.0 / prior_deviation)};
+  for (Index k = d; k < all; ++k) {
+    const bool two_sided = question_.suspects[on[static_cast<std::size_t>(k - d)]].two_sided;
+    space.lower(k) = two_sided ? -largest_strength : 0.0;
+    space.upper(k) = largest_strength;
+    space.centre(k) = 0.0;
+    space.precision(k) = 1.0 / strength_deviation;
+  }
+  return space;
+}
+
+Model Models::fit(const Additions& on, std::span<const Vector> starts) const {
+  Model model{on, learn(on), space(on), {}};
+  const Predictor predictor = this->predictor(model.emulator);
+  model.fit = fit_model(
+      predictor, targets_, covariance(model.emulator, starts.front()), model.space, starts);
+  // The emulator's own uncertainty is the one where the model came to lie.
+  const std::vector<Vector> again{model.fit.at};
+  model.fit =
+      fit_model(predictor, targets_, covariance(model.emulator, model.fit.at), model.space, again);
+  return model;
+}
+
+/// A grid, each point started from its neighbour's solution.
+Models::Range Models::strength_range(const Model& model) const {
+  constexpr int steps = 27;
+  const auto k = static_cast<Index>(runs_.space().dimensions());
+  const double lower = model.space.lower(k), upper = model.space.upper(k);
+  const double step = (upper - lower) / (steps - 1);
+  const Predictor predictor = this->predictor(model.emulator);
+  std::vector<double> deviance(steps);
+  const int middle =
+      std::clamp(static_cast<int>(std::lround((model.fit.at(k) - lower) / step)), 0, steps - 1);
+  const auto walk = [&](int from, int to, int direction) {
+    Vector x = model.fit.at;
+    for (int i = from; i != to; i += direction) {
+      ModelSpace held = model.space;
+      held.lower(k) = held.upper(k) = lower + step * i;
+      held.precision(k) = 0.0;
+      x(k) = held.lower(k);
+      const std::vector<Vector> starts{x};
+      const ModelFit fit =
+          fit_model(predictor, targets_, covariance(model.emulator, x), held, starts);
+      x = fit.at;
+      deviance[static_cast<std::size_t>(i)] = fit.deviance - fit.misfit + fit.objective;
+    }
+  };
+  walk(middle, steps, 1);
+  walk(middle - 1, -1, -1);
+  const double best = *std::ranges::min_element(deviance);
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (int i = 0; i < steps; ++i) {
+    if (deviance[static_cast<std::size_t>(i)] - best > threshold) continue;
+    range.lower = std::min(range.lower, lower + step * i);
+    range.upper = std::max(range.upper, lower + step * i);
+  }
+  return range;
+}
+
+}  // namespace repose::calibrator

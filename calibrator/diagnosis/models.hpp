@@ -1,0 +1,58 @@
+/// Models: the calibrated model, and it with suspects added, each fitted to the targets on an
+/// emulator of all runs in which no other suspect was on.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "calibrator/diagnosis/diagnose.hpp"
+#include "calibrator/diagnosis/model_fit.hpp"
+#include "calibrator/diagnosis/suite_runs.hpp"
+#include "calibrator/diagnosis/trend_emulator.hpp"
+
+namespace repose::calibrator {
+
+/// Effects that a model adds, by their index among the suspects.
+using Additions = std::vector<std::size_t>;
+
+struct Model {
+  Additions on;
+  TrendEmulator emulator;
+  ModelSpace space;
+  ModelFit fit;
+};
+
+class Models {
+ public:
+  Models(const DiagnosisQuestion& question, const SuiteRuns& runs);
+
+  /// The model with these suspects free, from everything that has been run so far.
+  [[nodiscard]] Model fit(const Additions& on, std::span<const Eigen::VectorXd> starts) const;
+
+  /// 95 % interval of the strength of its first addition.
+  struct Range {
+    double lower = 0.0, upper = 0.0;
+  };
+  [[nodiscard]] Range strength_range(const Model& model) const;
+
+  /// Measurements that are fitted and that enough runs have observed.
+  [[nodiscard]] const std::vector<Eigen::Index>& fitted() const { return fitted_; }
+  [[nodiscard]] const Eigen::VectorXd& targets() const { return targets_; }
+
+  [[nodiscard]] Predictor predictor(const TrendEmulator& emulator) const;
+  [[nodiscard]] Eigen::MatrixXd covariance(const TrendEmulator& emulator,
+                                           const Eigen::VectorXd& at) const;
+  [[nodiscard]] ModelSpace space(const Additions& on) const;
+
+ private:
+  [[nodiscard]] TrendEmulator learn(const Additions& on) const;
+
+  const DiagnosisQuestion& question_;
+  const SuiteRuns& runs_;
+  std::vector<Eigen::Index> fitted_;
+  Eigen::VectorXd targets_;
+};
+
+}  // namespace repose::calibrator

@@ -1,0 +1,129 @@
+#include "calibrator/diagnosis/screen.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/QR>
+
+#include "engine/random.hpp"
+
+namespace repose::calibrator {
+namespace {
+
+using Eigen::Index;
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+/// Off the columns of the tangent space, the prior's rows below the data's.
+Matrix projector_off(const ModelFit& base, const ModelSpace& space) {
+  const Index data = base.jacobian.rows();
+  const auto inside = static_cast<Index>(base.inside.size());
+  Matrix tangent = Matrix::Zero(data + inside, inside);
+  tangent.topRows(data) = base.jacobian(Eigen::all, base.inside);
+  tangent.bottomRows(inside).diagonal() = space.precision(base.inside);
+  Matrix projector = Matrix::Identity(data + inside, data + inside);
+  if (inside == 0) return projector;
+  const Matrix q = Eigen::HouseholderQR<Matrix>(tangent).householderQ() *
+                   Matrix::Identity(data + inside, inside);
+  return projector - q * q.transpose();
+}
+
+Vector residuals_of(const ModelFit& base, const ModelSpace& space) {
+  const Vector pull = space.precision.cwiseProduct(space.centre - base.at);
+  Vector result(base.residuals.size() + static_cast<Index>(base.inside.size()));
+  result << base.residuals, pull(base.inside);
+  return result;
+}
+
+/// The best strength within its limits, and what it gains.
+Score score_of(double slope, double information, bool two_sided) {
+  const double lower = two_sided ? -largest_strength : 0.0;
+  Score score;
+  score.information = std::max(information, 1e-9);
+  score.strength = std::clamp(slope / score.information, lower, largest_strength);
+  score.value = std::max(0.0, (2.0 * slope - score.strength * score.information) * score.strength);
+  return score;
+}
+
+/// A Student's t with that many degrees of freedom; beyond a hundred a normal.
+double draw_t(engine::Random& random, double freedom) {
+  const double normal = random.normal();
+  if (!(freedom < 100.0)) return normal;
+  double sum = 0.0;
+  const int whole = std::max(1, static_cast<int>(std::lround(freedom)));
+  for (int i = 0; i < whole; ++i) {
+    const double x = random.normal();
+    sum += x * x;
+  }
+  return normal / std::sqrt(sum / whole);
+}
+
+}  // namespace
+
+Screen::Screen(const ModelFit& base, const ModelSpace& space, std::vector<Departure> departures)
+    : departures_(std::move(departures)), projector_(projector_off(base, space)) {
+  const auto count = static_cast<Index>(departures_.size());
+  const Index data = base.residuals.size();
+  Matrix whitened = Matrix::Zero(count, projector_.rows());
+  for (Index k = 0; k < count; ++k) {
+    whitened.row(k).head(data) =
+        (base.whitener * departures_[static_cast<std::size_t>(k)].change).transpose();
+  }
+  projected_ = whitened * projector_;
+  slopes_ = projected_ * residuals_of(base, space);
+  products_ = projected_ * whitened.transpose();
+  similarity_ = products_;
+  for (Index k = 0; k < count; ++k) {
+    Score score =
+        score_of(slopes_(k), products_(k, k), departures_[static_cast<std::size_t>(k)].two_sided);
+    const double whole = whitened.row(k).squaredNorm();
+    score.absorbed = whole > 0.0 ? std::clamp(1.0 - products_(k, k) / whole, 0.0, 1.0) : 1.0;
+    scores_.push_back(score);
+    const double size = std::sqrt(score.information);
+    similarity_.row(k) /= size;
+    similarity_.col(k) /= size;
+  }
+}
+
+double Screen::pair_gain(std::size_t a, std::size_t b) const {
+  const auto i = static_cast<Index>(a), j = static_cast<Index>(b);
+  const double aa = products_(i, i), bb = products_(j, j), ab = products_(i, j);
+  const double determinant = aa * bb - ab * ab;
+  if (determinant < 1e-6 * aa * bb) return -1.0;
+  double x = (bb * slopes_(i) - ab * slopes_(j)) / determinant;
+  double y = (aa * slopes_(j) - ab * slopes_(i)) / determinant;
+  if ((x < 0.0 && !departures_[a].two_sided) || (y < 0.0 && !departures_[b].two_sided)) return -1.0;
+  x = std::clamp(x, -largest_strength, largest_strength);
+  y = std::clamp(y, -largest_strength, largest_strength);
+  return 2.0 * (x * slopes_(i) + y * slopes_(j)) - (x * x * aa + 2.0 * x * y * ab + y * y * bb);
+}
+
+std::vector<Screen::Draw> Screen::draw_null(std::size_t named,
+                                            const Vector& freedom,
+                                            std::uint64_t seed,
+                                            int draws) const {
+  const Index data = freedom.size();
+  std::vector<Draw> result;
+  result.reserve(static_cast<std::size_t>(draws));
+  Vector noise(projector_.rows());
+  for (int d = 0; d < draws; ++d) {
+    engine::Random random(seed, engine::Purpose::diagnosis_null, static_cast<std::uint64_t>(d));
+    for (Index i = 0; i < noise.size(); ++i) {
+      noise(i) = i < data ? draw_t(random, freedom(i)) : random.normal();
+    }
+    const Vector slopes = projected_ * noise;
+    Draw draw;
+    for (std::size_t k = 0; k < departures_.size(); ++k) {
+      const double u = slopes(static_cast<Index>(k));
+      if (u < 0.0 && !departures_[k].two_sided) continue;
+      double& largest = k < named ? draw.named : draw.unnamed;
+      largest = std::max(largest, u * u / scores_[k].information);
+    }
+    draw.misfit = (projector_ * noise).head(data).squaredNorm();
+    result.push_back(draw);
+  }
+  return result;
+}
+
+}  // namespace repose::calibrator

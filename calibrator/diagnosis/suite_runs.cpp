@@ -1,0 +1,86 @@
+#include "calibrator/diagnosis/suite_runs.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "engine/random.hpp"
+
+namespace repose::calibrator {
+
+SuiteRuns::SuiteRuns(const Calibration& calibration,
+                     std::span<const Suspect> suspects,
+                     const Evaluator& evaluator,
+                     const Fit& fit)
+    : calibration_(calibration),
+      suspects_(suspects),
+      evaluator_(evaluator),
+      space_(calibration),
+      suite_(calibration.measurements) {
+  const bool two_levels = calibration.budget.fidelity != calibration.budget.confirm_fidelity;
+  for (const HistoryPoint& point : fit.history) {
+    // Runs of another fidelity are another quantity.
+    if (two_levels && (point.stage == "confirm" || point.stage == "pair")) continue;
+    runs_.push_back({space_.coordinates(point.parameters), {}, point.values});
+  }
+}
+
+void SuiteRuns::run(std::span<const Point> points) {
+  std::vector<engine::Trial> trials;
+  std::vector<SuiteRun> asked;
+  for (const Point& point : points) {
+    SuiteRun run{point.at, {}, {}};
+    engine::ParameterSet parameters = space_.at(point.at);
+    for (const auto& [suspect, strength] : point.strengths) {
+      const double snapped = suspects_[suspect].snapped(strength);
+      suspects_[suspect].apply(parameters, snapped);
+      run.strengths[suspect] = snapped;
+    }
+    // A function of the question alone, so that a replay asks the same.
+    const std::uint64_t seed =
+        engine::Random(
+            calibration_.seed, engine::Purpose::diagnosis, static_cast<std::uint64_t>(spent_++))
+            .bits() >>
+        11U;
+    suite_.append_trials(parameters, calibration_.budget.fidelity, seed, trials);
+    asked.push_back(std::move(run));
+  }
+  const std::vector<engine::Evaluation> evaluations = evaluator_(trials);
+  assert(evaluations.size() == trials.size());
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    asked[i].values = suite_.read(std::span(evaluations).subspan(i * suite_.size(), suite_.size()));
+    runs_.push_back(std::move(asked[i]));
+  }
+}
+
+SuiteRuns::Table SuiteRuns::table(std::span<const std::size_t> on) const {
+  std::vector<const SuiteRun*> used;
+  for (const SuiteRun& run : runs_) {
+    const bool within = std::ranges::all_of(run.strengths, [&](const auto& entry) {
+      return entry.second == 0.0 || std::ranges::find(on, entry.first) != on.end();
+    });
+    if (within) used.push_back(&run);
+  }
+  const std::size_t d = space_.dimensions(), m = calibration_.measurements.size();
+  Table table{
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(used.size()),
+                            static_cast<Eigen::Index>(d + on.size())),
+      Eigen::MatrixXd(static_cast<Eigen::Index>(used.size()), static_cast<Eigen::Index>(m))};
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t k = 0; k < d; ++k) {
+      table.inputs(row, static_cast<Eigen::Index>(k)) = used[i]->at[k];
+    }
+    for (std::size_t k = 0; k < on.size(); ++k) {
+      const auto found = used[i]->strengths.find(on[k]);
+      const double strength = found == used[i]->strengths.end() ? 0.0 : found->second;
+      table.inputs(row, static_cast<Eigen::Index>(d + k)) = strength;
+    }
+    for (std::size_t j = 0; j < m; ++j) {
+      table.outputs(row, static_cast<Eigen::Index>(j)) = used[i]->values[j];
+    }
+  }
+  return table;
+}
+
+}  // namespace repose::calibrator

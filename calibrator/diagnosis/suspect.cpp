@@ -1,0 +1,164 @@
+#include "calibrator/diagnosis/suspect.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "engine/catalogue.hpp"
+
+namespace repose::calibrator {
+namespace {
+
+using engine::EffectInfo;
+using engine::MaterialId;
+using engine::ParameterKey;
+using engine::ParameterSet;
+
+constexpr double most_strength = 1.3;  // beyond it an effect is no longer plausible
+
+std::string_view owner_of(const ParameterKey& key) {
+  return std::string_view(key.field).substr(0, key.field.find('.'));
+}
+
+/// Effects that the model has: a parameter that is free, tied, or fixed off its null.
+std::set<std::string_view> effects_in_use(const Calibration& calibration) {
+  std::set<std::string_view> names;
+  for (const auto& [key, value] : calibration.fixed) {
+    const engine::ParameterInfo* info = engine::find_parameter(key.field);
+    if (info != nullptr && value != info->field->null_value) names.insert(owner_of(key));
+  }
+  for (const FreeParameter& free : calibration.free) names.insert(owner_of(free.key));
+  for (const Tie& tie : calibration.tied) names.insert(owner_of(tie.key));
+  return names;
+}
+
+double material(const ParameterSet& set, std::string_view property, double otherwise) {
+  return set.get_or(engine::make_key("material." + std::string(property), {MaterialId::grain}),
+                    otherwise);
+}
+
+engine::GrainScale scale_of(const ParameterSet& best) {
+  const double shear = material(best, "shear_modulus", 1e6);
+  const double poisson = material(best, "poisson_ratio", 0.25);
+  const double young = 2.0 * shear * (1.0 + poisson);
+  return {.radius = 0.5 * material(best, "diameter", 6e-3),
+          .density = material(best, "density", 1200.0),
+          .elastic = {.modulus = young / (2.0 * (1.0 - poisson * poisson)),
+                      .shear_modulus = shear / (2.0 * (2.0 - poisson))}};
+}
+
+/// The materials a parameter is set for: every grain contact there is.
+std::vector<std::vector<MaterialId>> places_of(engine::Scope scope) {
+  if (scope == engine::Scope::global) return {{}};
+  if (scope == engine::Scope::material) return {{MaterialId::grain}};
+  return {{MaterialId::grain, MaterialId::grain}, {MaterialId::grain, MaterialId::wall}};
+}
+
+Suspect suspect_of(const EffectInfo& effect, const engine::GrainScale& grains) {
+  Suspect suspect{std::string(effect.text.name), std::string(effect.text.title), {}};
+  const std::vector<double> strong = effect.strong(grains);
+  for (std::size_t f = 0; f < effect.fields.size(); ++f) {
+    const engine::FieldInfo& field = effect.fields[f];
+    for (const auto& between : places_of(effect.scope)) {
+      suspect.levers.push_back(
+          {.key = engine::make_key(suspect.name + "." + std::string(field.name), between),
+           .null_value = field.null_value,
+           .strong = strong[f],
+           .lower = field.lower,
+           .upper = field.upper,
+           .whole = field.whole});
+    }
+  }
+  return suspect;
+}
+
+/// Walls whose friction follows the grains' may have one of their own.
+void add_wall_friction(const Calibration& calibration, std::vector<Suspect>& suspects) {
+  const ParameterKey wall =
+      engine::make_key("sliding_friction.coefficient", {MaterialId::grain, MaterialId::wall});
+  const bool follows =
+      std::ranges::find(calibration.tied, wall, &Tie::key) != calibration.tied.end();
+  if (!follows) return;
+  suspects.push_back(
+      {.name = "wall_friction",
+       .title = "A wall friction of its own",
+       .levers = {{.key = wall, .strong = 0.5, .lower = 0.0, .upper = 2.0, .relative = true}},
+       .two_sided = true});
+}
+
+}  // namespace
+
+double Lever::value(const ParameterSet& parameters, double strength) const {
+  const double wanted = relative ? parameters.get_or(key, 0.0) * (1.0 + strong * strength)
+                                 : null_value + strength * (strong - null_value);
+  return std::clamp(whole ? std::round(wanted) : wanted, lower, upper);
+}
+
+void Suspect::apply(ParameterSet& parameters, double strength) const {
+  if (strength == 0.0) return;
+  for (const Lever& lever : levers) {
+    parameters.set(lever.key, lever.value(parameters, strength));
+  }
+}
+
+double Suspect::snapped(double strength) const {
+  for (const Lever& lever : levers) {
+    if (lever.whole) {
+      return (lever.value({}, strength) - lever.null_value) / (lever.strong - lever.null_value);
+    }
+  }
+  return strength;
+}
+
+void extend(const Suspect& suspect, const ParameterSet& best, Calibration& calibration) {
+  for (const Lever& lever : suspect.levers) {
+    std::erase_if(calibration.tied, [&](const Tie& tie) { return tie.key == lever.key; });
+    calibration.fixed.erase(lever.key);
+    const engine::ParameterInfo* info = engine::find_parameter(lever.key.field);
+    const engine::Unit unit = info != nullptr ? info->field->unit : engine::Unit{};
+    const double none = lever.relative ? lever.value(best, -1.0) : lever.null_value;
+    const double most = lever.value(best, lever.whole ? 1.0 : most_strength);
+    // What no strength moves belongs to the effect, but not to the search.
+    if (none == most) {
+      calibration.fixed.set(lever.key, none);
+      continue;
+    }
+    const auto leader = std::ranges::find(calibration.free,
+                                          lever.key.field,
+                                          [](const FreeParameter& free) { return free.key.field; });
+    if (leader != calibration.free.end() && !lever.relative) {
+      calibration.tied.push_back({lever.key, leader->key, 1.0});
+      continue;
+    }
+    calibration.free.push_back(
+        {lever.key, std::min(none, most), std::max(none, most), Scale::linear, unit});
+  }
+}
+
+std::vector<Suspect> suspects_of(const Calibration& calibration, const ParameterSet& best) {
+  const std::set<std::string_view> in_use = effects_in_use(calibration);
+  std::set<std::string_view> families;
+  for (const std::string_view name : in_use) {
+    const EffectInfo* effect = engine::find_effect(name);
+    if (effect != nullptr && !effect->text.family.empty()) families.insert(effect->text.family);
+  }
+  const auto named = [&](std::string_view name) {
+    return calibration.suspects.empty() ||
+           std::ranges::find(calibration.suspects, name) != calibration.suspects.end();
+  };
+  const engine::GrainScale grains = scale_of(best);
+  std::vector<Suspect> suspects;
+  for (const EffectInfo& effect : engine::effect_catalogue()) {
+    if (effect.strong == nullptr || in_use.contains(effect.text.name) || !named(effect.text.name)) {
+      continue;
+    }
+    if (families.contains(effect.text.family)) continue;  // the model has another form of it
+    suspects.push_back(suspect_of(effect, grains));
+  }
+  if (named("wall_friction")) add_wall_friction(calibration, suspects);
+  return suspects;
+}
+
+}  // namespace repose::calibrator

@@ -1,0 +1,36 @@
+/// Tolerance: how closely two right DEM codes agree on an observable, which is as closely as any
+/// model's word is taken.
+///
+/// Each observable brings its spread between codes (engine/experiments); a study may state another.
+/// Readings of one observable share the offset:
+///
+///   Cov(t_i, t_j) = 0.95 tau_i tau_j + 0.05 tau_i^2 [i = j],   tau_j = spread x size of y_j
+///
+/// The size of an angle is that of its tangent: sin(2 y) / 2 rad for 100 %.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "calibrator/measurement.hpp"
+
+namespace repose::calibrator {
+
+/// "tilting_box.static_angle" -> relative spread, 1.
+using Tolerances = std::map<std::string, double>;
+
+std::string observable_name(const Measurement& measurement);  ///< "tilting_box.static_angle"
+
+/// What 100 % of a measurement is, in its unit (SI).
+double size_of(const Measurement& measurement);
+
+/// The observable's own spread between codes, unless `stated` has another.
+double tolerance_of(const Measurement& measurement, const Tolerances& stated);
+
+/// Of measurements: standard errors and allowances, and the shared tolerance.
+Eigen::MatrixXd covariance_of(std::span<const Measurement> measurements, const Tolerances& stated);
+
+}  // namespace repose::calibrator

@@ -1,0 +1,35 @@
+/// The rules by which a diagnosis decides, and its sentence.
+///
+///   adequate     p_named >= 0.03, p_unnamed >= 0.015 and p_misfit >= 0.005: 5 % in all
+///   A, B, C, D   margin M = deviance of the best excuse - of the best refit: A above 6, B within,
+///                C below -6 where the excuse fits better; D where no misfit has p >= 0.02
+///   plausible    refits whose deviance is within 6 of the best
+///
+/// Source: the error rates of these numbers on a stand-in, tests/calibrator/diagnosis.
+#pragma once
+
+#include <vector>
+
+#include "calibrator/calibration.hpp"
+#include "calibrator/diagnosis/diagnosis.hpp"
+#include "calibrator/diagnosis/screen.hpp"
+
+namespace repose::calibrator {
+
+bool adequate(const Diagnosis& diagnosis);
+
+/// Whether no single effect fits, nor an excuse.
+bool wants_pairs(const Diagnosis& diagnosis);
+
+/// Detectable and excluded strengths, and the status, from one effect's information.
+void weigh(EffectFinding& finding, double information, std::size_t effects);
+
+/// Effects whose traces are the same once the free parameters have done their best.
+void find_families(const Screen& screen,
+                   const std::vector<std::size_t>& screened,
+                   Diagnosis& diagnosis);
+
+/// Verdict, grade, plausible set and sentence, from all that was found.
+void conclude(const Calibration& calibration, Diagnosis& diagnosis);
+
+}  // namespace repose::calibrator

@@ -1,0 +1,90 @@
+#include "server/json/missing_effect_json.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "server/json/place.hpp"
+#include "server/json/text.hpp"
+
+namespace repose::server {
+
+namespace {
+
+double number(const Json& json) {
+  return json.is_number() ? json.get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string text_of(const Json& json) {
+  return json.is_string() ? json.get<std::string>() : std::string();
+}
+
+FitQuality read_quality(const Json& json) {
+  return {number(json.at("misfit")),
+          number(json.at("freedom")),
+          number(json.at("p")),
+          number(json.at("fitted_z")),
+          number(json.at("held_out_z"))};
+}
+
+ComparisonRow read_row(const Json& json, std::size_t measurement) {
+  const Json& errors = json.at("errors");
+  return {measurement,
+          number(json.at("measured")),
+          number(json.at("predicted")),
+          number(json.at("difference")),
+          number(errors.at("measurement")),
+          number(errors.at("tolerance")),
+          number(errors.at("simulation")),
+          number(json.at("z")),
+          json.contains("z_before") ? number(json.at("z_before"))
+                                    : std::numeric_limits<double>::quiet_NaN()};
+}
+
+std::string trend_text(const Json& json) {
+  const double slope = number(json.at("slope")), z = number(json.at("z"));
+  return text_of(json.at("observable")) + " changes with " + text_of(json.at("setting")) + ": z " +
+         (slope < 0.0 ? "falls" : "rises") + " by " + short_number(std::abs(slope)) +
+         " per factor e (" + short_number(std::abs(z)) + " standard errors)";
+}
+
+}  // namespace
+
+engine::Result<DiagnosisRecordDocument, std::string> parse_diagnosis_record(std::string_view text) {
+  ProblemList problems;
+  const auto json = parse_text(text, own_text(text), problems);
+  if (!json) return engine::Unexpected{problems.all().front().message};
+  DiagnosisRecordDocument record;
+  record.id = json->value("id", std::int64_t{0});
+  record.calibration = json->value("calibration", std::int64_t{0});
+  record.state = text_of(json->value("state", Json(nullptr)));
+  record.error = text_of(json->value("error", Json(nullptr)));
+  const Json result = json->value("result", Json(nullptr));
+  if (result.is_object()) record.result = to_text(result);
+  return record;
+}
+
+engine::Result<ComparisonDocument, std::string> parse_comparison(std::string_view text) {
+  ProblemList problems;
+  const auto json = parse_text(text, own_text(text), problems);
+  if (!json) return engine::Unexpected{problems.all().front().message};
+  try {
+    ComparisonDocument document;
+    document.own = read_quality(*json);
+    if (json->at("before").is_object()) document.before = read_quality(json->at("before"));
+    for (const Json& row : json->at("measurements")) {
+      document.rows.push_back(read_row(row, document.rows.size()));
+    }
+    document.sentences = json->at("text").get<std::vector<std::string>>();
+    constexpr double remarkable = 2.0;
+    for (const Json& trend : json->at("trends")) {
+      if (std::abs(number(trend.at("z"))) > remarkable) {
+        document.trends.push_back(trend_text(trend));
+      }
+    }
+    return document;
+  } catch (const Json::exception& error) {
+    return engine::Unexpected{"this is no comparison: " + std::string(error.what())};
+  }
+}
+
+}  // namespace repose::server

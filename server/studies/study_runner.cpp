@@ -1,0 +1,220 @@
+#include "server/studies/study_runner.hpp"
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "calibrator/calibrate.hpp"
+#include "engine/catalogue.hpp"
+#include "engine/evaluate.hpp"
+#include "engine/unit.hpp"
+
+namespace repose::server {
+
+using engine::Evaluation;
+using engine::Trial;
+
+namespace {
+
+/// Seeds of the best set's replicates, apart from those of the runs.
+constexpr std::uint64_t fresh_seed = 1001;
+
+/// What one sample of the result is asked with.
+struct Question {
+  std::string experiment;
+  std::string observable;
+  double factor;  ///< SI value of the paper's unit
+  std::vector<Trial> trials;
+};
+
+/// Adds one evaluation to a sample; means are sums until all are in.
+void add(Sample& sample, const Question& question, const Evaluation& evaluation) {
+  sample.grain_steps += static_cast<double>(evaluation.effort.grain_steps);
+  sample.simulated_seconds += evaluation.effort.simulated_seconds;
+  sample.time_step = evaluation.effort.time_step;
+  sample.largest_overlap_at_rest =
+      std::max(sample.largest_overlap_at_rest, evaluation.effort.overlap_at_rest);
+  if (const auto* failure = std::get_if<engine::Failure>(&evaluation.outcome)) {
+    if (sample.failed++ == 0) {
+      sample.failure =
+          std::string(engine::failure_kind_names.at(static_cast<std::size_t>(failure->kind))) +
+          ": " + failure->message;
+    }
+    return;
+  }
+  for (const auto& seen : std::get<std::vector<engine::Observation>>(evaluation.outcome)) {
+    if (seen.name == question.observable) sample.values.push_back(seen.value / question.factor);
+  }
+}
+
+Sample sample_of(const Question& question, std::span<const Evaluation> evaluations) {
+  Sample sample;
+  for (const Evaluation& evaluation : evaluations) add(sample, question, evaluation);
+  const double count = static_cast<double>(std::max<std::size_t>(1, evaluations.size()));
+  sample.grain_steps /= count;
+  sample.simulated_seconds /= count;
+  return sample;
+}
+
+class Runner {
+ public:
+  Runner(const PublishedStudy& study,
+         StudySize size,
+         Workers& workers,
+         const std::stop_token& stop,
+         const StudyObserver& observer)
+      : study_(study), size_(size), workers_(workers), stop_(stop), observer_(observer) {
+    result_.study = &study;
+    result_.size = size;
+    result_.engine_version = engine::version();
+  }
+
+  std::optional<StudyResult> run() {
+    runs("drop tests", {drop()});
+    for (const StudyExperiment& experiment : study_.experiments) {
+      runs(experiment.experiment + " of every run", {experiment});
+    }
+    variants();
+    search();
+    if (stopped_) return std::nullopt;
+    return std::move(result_);
+  }
+
+ private:
+  /// The drop test as an experiment of the study: once, since it has nothing random.
+  [[nodiscard]] StudyExperiment drop() const {
+    return {study_.drop_experiment, study_.drop_observable, "1", 0.0, 1, 1};
+  }
+
+  [[nodiscard]] Question question(const StudyExperiment& what,
+                                  const engine::ParameterSet& parameters,
+                                  const engine::Experiment& experiment,
+                                  std::uint64_t seed = 1) const {
+    return {what.experiment,
+            what.observable,
+            engine::unit::find(what.unit).value().factor,
+            replicate_trials(parameters, experiment, replicates_of(what, size_), seed)};
+  }
+
+  /// Answers all questions at once, so that every worker is busy; nothing where it was stopped.
+  std::vector<Sample> ask(const std::string& part, const std::vector<Question>& questions) {
+    if (stopped_) return {};
+    std::vector<Trial> trials;
+    for (const Question& each : questions) {
+      trials.insert(trials.end(), each.trials.begin(), each.trials.end());
+    }
+    const auto tell = [&](std::size_t done, std::size_t all, bool stored) {
+      if (observer_) observer_(part, done, all, stored);
+    };
+    const std::vector<Evaluation> evaluations = workers_.run(trials, stop_, tell);
+    if (workers_.interrupted()) {
+      stopped_ = true;
+      return {};
+    }
+    note(evaluations);
+    std::vector<Sample> samples;
+    std::size_t from = 0;
+    for (const Question& each : questions) {
+      const std::span all(evaluations);
+      samples.push_back(sample_of(each, all.subspan(from, each.trials.size())));
+      from += each.trials.size();
+    }
+    return samples;
+  }
+
+  void note(std::span<const Evaluation> evaluations) {
+    result_.trials += evaluations.size();
+    for (const Evaluation& evaluation : evaluations) {
+      result_.grain_steps += static_cast<double>(evaluation.effort.grain_steps);
+    }
+  }
+
+  /// Every run of the study in these experiments, where the paper ran it. The paper's drop test was
+  /// for every combination.
+  void runs(const std::string& part, const std::vector<StudyExperiment>& experiments) {
+    std::vector<Question> questions;
+    std::vector<std::string> names;
+    for (const StudyExperiment& what : experiments) {
+      for (const StudyRun& run : study_.runs) {
+        if (what.experiment != study_.drop_experiment && !run.printed.contains(what.experiment)) {
+          continue;
+        }
+        questions.push_back(question(
+            what, run_parameters(study_, run.run), {what.experiment, fidelity_of(size_), {}}));
+        names.push_back(run.run);
+      }
+    }
+    std::vector<Sample> samples = ask(part, questions);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      result_.runs[names[i]][questions[i].experiment] = std::move(samples[i]);
+    }
+  }
+
+  void variants() {
+    std::vector<Question> questions;
+    std::vector<std::size_t> of;
+    for (std::size_t i = 0; i < study_.variants.size(); ++i) {
+      const StudyVariant& variant = study_.variants[i];
+      result_.variants.push_back({variant.variant, {}});
+      for (const StudyExperiment& what : study_.experiments) {
+        if (std::ranges::count(variant.experiments, what.experiment) == 0) continue;
+        questions.push_back(question(what,
+                                     variant_parameters(study_, variant),
+                                     variant_experiment(variant, what.experiment, size_)));
+        of.push_back(i);
+      }
+    }
+    std::vector<Sample> samples = ask("variants of the base", questions);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      result_.variants[of[i]].samples[questions[i].experiment] = std::move(samples[i]);
+    }
+  }
+
+  void search() {
+    if (stopped_) return;
+    SearchResult found{study_search(study_, size_), {}, {}};
+    const calibrator::Evaluator evaluator = [&](std::span<const Trial> trials) {
+      const auto tell = [&](std::size_t done, std::size_t all, bool stored) {
+        if (observer_) observer_("search, a batch", done, all, stored);
+      };
+      auto evaluations = workers_.run(trials, stop_, tell);
+      stopped_ = stopped_ || workers_.interrupted();
+      note(evaluations);
+      return evaluations;
+    };
+    found.fit = calibrator::calibrate(found.calibration, evaluator, stop_);
+    std::vector<Question> questions;
+    for (const StudyExperiment& what : study_.experiments) {
+      questions.push_back(
+          question(what, found.fit.best, {what.experiment, fidelity_of(size_), {}}, fresh_seed));
+    }
+    std::vector<Sample> samples = ask("the best set", questions);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      found.samples[questions[i].experiment] = std::move(samples[i]);
+    }
+    result_.search = std::move(found);
+  }
+
+  const PublishedStudy& study_;
+  const StudySize size_;
+  Workers& workers_;
+  const std::stop_token stop_;
+  const StudyObserver& observer_;
+  StudyResult result_;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+std::optional<StudyResult> run_study(const PublishedStudy& study,
+                                     StudySize size,
+                                     Workers& workers,
+                                     const std::stop_token& stop,
+                                     const StudyObserver& observer) {
+  return Runner(study, size, workers, stop, observer).run();
+}
+
+}  // namespace repose::server

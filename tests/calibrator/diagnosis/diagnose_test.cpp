@@ -1,0 +1,79 @@
+#include "calibrator/diagnosis/diagnose.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/stand_in.hpp"
+
+using namespace repose;
+using calibrator::Diagnosis;
+using calibrator::DiagnosisVerdict;
+
+namespace {
+
+std::string named(const Diagnosis& diagnosis) {
+  return diagnosis.refits.empty()
+             ? ""
+             : diagnosis.effects[diagnosis.refits.front().effects.front()].suspect.name;
+}
+
+}  // namespace
+
+TEST_CASE("a strong hidden effect is named, and adding it removes the error", "[calibrator]") {
+  const auto problem = stand_in::make_problem(7, {{"hysteresis", 0.8}});
+  const Diagnosis diagnosis = stand_in::diagnose(problem);
+  CHECK(diagnosis.verdict == DiagnosisVerdict::named);
+  REQUIRE(named(diagnosis) == "hysteresis");
+  const calibrator::Refit& refit = diagnosis.refits.front();
+  CHECK(refit.strengths.front() == Approx(0.8).margin(0.25));
+  CHECK(refit.strength_lower.front() < 0.8);
+  CHECK(refit.strength_upper.front() > 0.8);
+  CHECK(refit.fitted_z < 0.6 * diagnosis.fitted_z);
+  CHECK(diagnosis.evaluations <= 200);
+}
+
+TEST_CASE("where nothing is missing nothing is named, and no refit is paid for", "[calibrator]") {
+  const auto problem = stand_in::make_problem(3, {});
+  const Diagnosis diagnosis = stand_in::diagnose(problem);
+  CHECK(diagnosis.verdict == DiagnosisVerdict::adequate);
+  CHECK(diagnosis.refits.empty());
+  CHECK(diagnosis.evaluations < 70);
+}
+
+TEST_CASE("a diagnosis asked twice has the same answer to the bit", "[calibrator]") {
+  const auto problem = stand_in::make_problem(11, {{"weaken", 0.9}});
+  const Diagnosis once = stand_in::diagnose(problem), again = stand_in::diagnose(problem);
+  REQUIRE(once.refits.size() == again.refits.size());
+  for (std::size_t i = 0; i < once.refits.size(); ++i) {
+    CHECK(once.refits[i].deviance == again.refits[i].deviance);
+    CHECK(once.refits[i].strengths == again.refits[i].strengths);
+  }
+  CHECK(once.p_named == again.p_named);
+}
+
+TEST_CASE("effects with one trace are reported as a family", "[calibrator]") {
+  stand_in::Settings wet;
+  wet.readings = stand_in::at_moisture(14.0);
+  const auto problem = stand_in::make_problem(5, {{"jkr", 0.9}}, wet);
+  const Diagnosis diagnosis = stand_in::diagnose(problem);
+  REQUIRE(diagnosis.verdict == DiagnosisVerdict::family);
+  CHECK(diagnosis.grade != calibrator::Grade::a);
+  CHECK(diagnosis.sentence.find("capillary") != std::string::npos);
+  CHECK(diagnosis.sentence.find("jkr") != std::string::npos);
+}
+
+TEST_CASE("a stopped diagnosis has no answer", "[calibrator]") {
+  const auto problem = stand_in::make_problem(1, {});
+  std::stop_source stop;
+  stop.request_stop();
+  const calibrator::DiagnosisQuestion question{problem.calibration,
+                                               problem.fit,
+                                               problem.suspects,
+                                               problem.covariance,
+                                               Eigen::VectorXd::Ones(problem.covariance.rows()),
+                                               problem.freedom};
+  CHECK_FALSE(
+      calibrator::diagnose(question, stand_in::evaluator(problem), stop.get_token()).has_value());
+}

@@ -1,0 +1,109 @@
+#include "calibrator/diagnosis/screen.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include <Eigen/QR>
+#include <catch2/catch.hpp>
+
+#include "calibrator/diagnosis/chi_squared.hpp"
+
+using namespace repose::calibrator;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// f = A x over four targets and one parameter, fitted to y.
+struct Fitted {
+  ModelSpace space;
+  ModelFit fit;
+};
+
+Fitted fitted(const MatrixXd& slopes, const VectorXd& y) {
+  const auto d = slopes.cols();
+  const ModelSpace space{VectorXd::Constant(d, -10.0),
+                         VectorXd::Constant(d, 10.0),
+                         VectorXd::Zero(d),
+                         VectorXd::Constant(d, 1e-6)};
+  const Predictor predictor{[&](const VectorXd& x) -> VectorXd { return slopes * x; },
+                            [&](const VectorXd&) -> MatrixXd { return slopes; }};
+  const std::vector<VectorXd> starts{VectorXd::Zero(d)};
+  return {space, fit_model(predictor, y, MatrixXd::Identity(y.size(), y.size()), space, starts)};
+}
+
+}  // namespace
+
+TEST_CASE("a linear model is fitted by least squares", "[calibrator]") {
+  const MatrixXd slopes = (MatrixXd(4, 2) << 1, 0, 0, 1, 1, 1, 1, -1).finished();
+  const VectorXd y = (VectorXd(4) << 1, 2, 4, 0).finished();
+  const Fitted model = fitted(slopes, y);
+  const VectorXd expected = slopes.colPivHouseholderQr().solve(y);
+  CHECK((model.fit.at - expected).norm() < 1e-6);
+  CHECK(model.fit.misfit == Approx((y - slopes * expected).squaredNorm()));
+  CHECK(model.fit.freedom == Approx(2.0).margin(1e-6));
+}
+
+TEST_CASE("a bound holds a parameter and gives its direction back to the data", "[calibrator]") {
+  const MatrixXd slopes = (MatrixXd(3, 1) << 1, 1, 1).finished();
+  const VectorXd y = VectorXd::Constant(3, 20.0);
+  const Fitted model = fitted(slopes, y);
+  CHECK(model.fit.at(0) == 10.0);
+  CHECK(model.fit.inside.empty());
+  CHECK(model.fit.freedom == 3.0);
+}
+
+TEST_CASE("a score is what the misfit falls by where the model is linear", "[calibrator]") {
+  const MatrixXd slopes = (MatrixXd(4, 1) << 1, 1, 1, 1).finished();
+  const VectorXd effect = (VectorXd(4) << 0, 1, 2, 3).finished();
+  const VectorXd y = slopes * VectorXd::Constant(1, 2.0) + 0.7 * effect +
+                     (VectorXd(4) << 0.1, -0.2, 0.15, 0.05).finished();
+  const Fitted base = fitted(slopes, y);
+  const Screen screen(base.fit, base.space, {{effect, false}});
+  MatrixXd both(4, 2);
+  both << slopes, effect;
+  const Fitted full = fitted(both, y);
+  CHECK(screen.scores()[0].strength == Approx(full.fit.at(1)).margin(1e-6));
+  CHECK(screen.scores()[0].value == Approx(base.fit.misfit - full.fit.misfit).margin(1e-6));
+  CHECK(screen.scores()[0].absorbed == Approx(9.0 / 14.0));  // the mean of 0, 1, 2, 3 is absorbed
+}
+
+TEST_CASE("what the parameters imitate leaves no trace, and a strength below zero no score",
+          "[calibrator]") {
+  const MatrixXd slopes = (MatrixXd(3, 1) << 1, 2, 3).finished();
+  const VectorXd other = (VectorXd(3) << 1, 0, 0).finished();
+  const VectorXd y = (VectorXd(3) << 1.0 - 2.0, 2.0, 3.0).finished();
+  const Fitted base = fitted(slopes, y);
+  const Screen screen(
+      base.fit, base.space, {{slopes.col(0), false}, {other, false}, {other, true}});
+  CHECK(screen.scores()[0].absorbed == Approx(1.0).margin(1e-9));
+  CHECK(screen.scores()[0].value == Approx(0.0).margin(1e-9));
+  CHECK(screen.scores()[1].value == 0.0);
+  CHECK(screen.scores()[2].value > 1.0);
+  CHECK(screen.similarity()(1, 2) == Approx(1.0));
+}
+
+TEST_CASE("the joint null exceeds the largest score as often as it says", "[calibrator]") {
+  const MatrixXd slopes = (MatrixXd(6, 1) << 1, 1, 1, 1, 1, 1).finished();
+  const Fitted base = fitted(slopes, VectorXd::Zero(6));
+  std::vector<Departure> departures;
+  for (int k = 0; k < 4; ++k) departures.push_back({VectorXd::Unit(6, k), true});
+  const Screen screen(base.fit, base.space, departures);
+  const double known = std::numeric_limits<double>::infinity();
+  const auto null = screen.draw_null(4, VectorXd::Constant(6, known), 1, 20000);
+  const auto above =
+      std::ranges::count_if(null, [](const Screen::Draw& draw) { return draw.misfit >= 11.0705; });
+  CHECK(above == Approx(0.05 * 20000).epsilon(0.15));  // 95 % of chi-squared with five
+  const auto estimated = screen.draw_null(4, VectorXd::Constant(6, 4.0), 1, 20000);
+  const auto wider = std::ranges::count_if(
+      estimated, [](const Screen::Draw& draw) { return draw.misfit >= 11.0705; });
+  CHECK(wider > 3 * above);  // what is estimated from five repetitions is no proof
+}
+
+TEST_CASE("the chi-squared tail meets its table", "[calibrator]") {
+  CHECK(chi_squared_tail(3.841458820694124, 1.0) == Approx(0.05));
+  CHECK(chi_squared_tail(18.30703805327515, 10.0) == Approx(0.05));
+  CHECK(chi_squared_tail(5.0, 0.0) == 1.0);
+  CHECK(chi_squared_tail(0.0, 3.0) == 1.0);
+}

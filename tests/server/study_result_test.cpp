@@ -1,0 +1,162 @@
+#include "server/studies/study_result.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <catch2/catch.hpp>
+
+#include "server/json/study_result_json.hpp"
+#include "server/studies/study_findings.hpp"
+#include "server/studies/study_runner.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace repose;
+using namespace repose::server;
+using repose::tests::TemporaryFolder;
+
+namespace {
+
+std::string read(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+/// A study of drop tests alone, with two levels of restitution.
+PublishedStudy small_study() {
+  PublishedStudy study;
+  study.name = "small";
+  study.base = "1";
+  study.best = "2";
+  study.experiments = {{"drop", "restitution", "1", 0.5, 4, 2}};
+  study.drop_experiment = "drop";
+  study.drop_observable = "restitution";
+  study.drop_accuracy = {{0.8, 0.1, 0.2}};
+  study.common = {"material.density:grain=1228 kg/m3",
+                  "material.diameter:grain=6.5 mm",
+                  "material.shear_modulus:grain=10 MPa",
+                  "material.poisson_ratio:grain=0.25",
+                  "material.shear_modulus:wall=10 MPa",
+                  "material.poisson_ratio:wall=0.25"};
+  study.factors = {{"restitution", "1", {"restitution.coefficient:grain-wall"}, {{0.4}, {0.8}}}};
+  study.runs = {{"1", {{"drop", {0.40, 0.02}}}}, {"2", {{"drop", {0.79, 0.02}}}}};
+  study.tables = {{"Table 1", "restitution", {{"base", {"1"}}, {"restitution", {"2"}}}}};
+  study.computing_hours = {{"1", {{"drop", {2.0, 0.0}}}}, {"2", {{"drop", {3.0, 0.0}}}}};
+  study.variants = {{"bouncy",
+                     "restitution",
+                     "high restitution",
+                     {"drop"},
+                     {"restitution.coefficient:grain-wall=0.6"},
+                     {}}};
+  study.search = read(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
+  study.quick_search_evaluations = 8;
+  return study;
+}
+
+Sample sample(std::vector<double> values, double grain_steps = 0.0, double seconds = 0.0) {
+  Sample result;
+  result.values = std::move(values);
+  result.grain_steps = grain_steps;
+  result.simulated_seconds = seconds;
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a sample's spread is that of its values about their mean", "[server]") {
+  const Sample three = sample({1.0, 2.0, 6.0});
+  CHECK(three.mean() == 3.0);
+  CHECK(three.deviation() == Approx(std::sqrt(7.0)));
+  CHECK(three.error() == Approx(std::sqrt(7.0 / 3.0)));
+  CHECK(std::isnan(sample({1.0}).deviation()));
+  CHECK(std::isnan(sample({}).mean()));
+}
+
+TEST_CASE("a trend agrees where the change has the paper's sign, clearly where both exceed errors",
+          "[server]") {
+  const PublishedStudy study = small_study();
+  StudyResult result;
+  result.study = &study;
+  const auto trend_of = [&](std::vector<double> base, std::vector<double> run) {
+    result.runs["1"]["drop"] = sample(std::move(base));
+    result.runs["2"]["drop"] = sample(std::move(run));
+    return trend(result, "2", study.experiments[0]);
+  };
+  const Trend up = trend_of({0.40, 0.42}, {0.70, 0.72});
+  CHECK(up.paper == Approx(0.39));
+  CHECK(up.ours == Approx(0.30));
+  CHECK(up.agrees == true);
+  CHECK(up.clear());
+  const Trend faint = trend_of({0.3, 0.5}, {0.4, 0.5});
+  CHECK(faint.agrees == true);
+  CHECK(faint.paper_clear);
+  CHECK_FALSE(faint.clear());
+  const Trend down = trend_of({0.40, 0.42}, {0.30, 0.32});
+  CHECK(down.agrees == false);
+  const TrendCount count = count_trends(result, study.tables[0], study.experiments[0]);
+  CHECK(count.opposite == 1);
+  CHECK(count.clear_opposite == 1);
+  CHECK(count.agree == 0);
+  CHECK_FALSE(trend_of({0.4, 0.5}, {}).agrees.has_value());
+  CHECK_FALSE(trend(result, "1", study.experiments[0]).agrees.has_value());
+}
+
+TEST_CASE("the cost of a run is its steps for a simulated second over the base's", "[server]") {
+  const PublishedStudy study = small_study();
+  StudyResult result;
+  result.study = &study;
+  result.runs["1"]["drop"] = sample({0.4}, 1000.0, 2.0);
+  result.runs["2"]["drop"] = sample({0.8}, 1000.0, 0.5);
+  const CostRatio ratio = cost_ratio(result, "2", "drop");
+  CHECK(ratio.paper == Approx(1.5));
+  CHECK(ratio.ours == Approx(4.0));
+}
+
+TEST_CASE("a variant explains the share of the gap that it closes", "[server]") {
+  const PublishedStudy study = small_study();
+  StudyResult result;
+  result.study = &study;
+  result.runs["1"]["drop"] = sample({0.59, 0.61});
+  result.variants = {{"bouncy", {{"drop", sample({0.54, 0.56})}}}};
+  const auto explained = explain(result, "bouncy", study.experiments[0]);
+  REQUIRE(explained.has_value());
+  CHECK(explained->change == Approx(-0.05));
+  CHECK(explained->share == Approx(0.25));
+  CHECK(explained->left == Approx(0.15));
+  CHECK(explained->error == Approx(std::sqrt(2.0) * 0.01));
+  CHECK_FALSE(explain(result, "none", study.experiments[0]).has_value());
+}
+
+TEST_CASE("a study asked for again is answered from the store, the same to the letter",
+          "[server]") {
+  const TemporaryFolder folder;
+  const PublishedStudy study = small_study();
+  db::Store store(folder / "a.db", db::Access::write);
+  Workers workers(store, {.workers = 2});
+  std::size_t ran = 0;
+  const StudyObserver count = [&](std::string_view, std::size_t, std::size_t, bool stored) {
+    ran += stored ? 0 : 1;
+  };
+  const auto first = run_study(study, StudySize::quick, workers, {}, count);
+  REQUIRE(first.has_value());
+  CHECK(ran > 4);
+  CHECK(first->sample("2", "drop").mean() == Approx(0.8).margin(0.01));
+  REQUIRE(first->search.has_value());
+  CHECK(first->search->samples.at("drop").values.size() == 2);
+  ran = 0;
+  const auto second = run_study(study, StudySize::quick, workers, {}, count);
+  REQUIRE(second.has_value());
+  CHECK(ran == 0);
+  CHECK(print_study_result(*first) == print_study_result(*second));
+}
+
+TEST_CASE("a study that is asked to stop gives no result", "[server]") {
+  const TemporaryFolder folder;
+  const PublishedStudy study = small_study();
+  db::Store store(folder / "a.db", db::Access::write);
+  Workers workers(store, {.workers = 2});
+  std::stop_source stop;
+  stop.request_stop();
+  CHECK_FALSE(run_study(study, StudySize::quick, workers, stop.get_token(), {}).has_value());
+}
