@@ -69,11 +69,13 @@ struct GrainScale {
   double density;       ///< kg/m3
   PairElastic elastic;  ///< of grain on grain
 
-  /// N
-  [[nodiscard]] double weight() const {
-    constexpr double volume = 4.0 / 3.0 * unit::pi, gravity = 9.81;
-    return volume * radius * radius * radius * density * gravity;
+  /// kg
+  [[nodiscard]] double mass() const {
+    return 4.0 / 3.0 * unit::pi * radius * radius * radius * density;
   }
+
+  /// N
+  [[nodiscard]] double weight() const { return 9.81 * mass(); }
 
   /// Of two grains pressed together by the weight of one (Hertz; R* = R / 2), m.
   [[nodiscard]] double overlap() const {

@@ -63,6 +63,8 @@ struct AirDrag {
   static constexpr Stage stage = Stage::body;
   static constexpr Scope scope = Scope::global;
 
+  static constexpr Parameters strong(const GrainScale&) { return {1.0, 1.204, 1.825e-5}; }
+
   /// Force on a grain of that diameter, N.
   static Vec3 body(const Coefficients& p, double diameter, const Vec3& velocity) {
     const double speed = norm(velocity);

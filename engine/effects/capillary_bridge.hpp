@@ -69,6 +69,13 @@ struct CapillaryBridge {
   };
   static constexpr Stage stage = Stage::adhesion;
   static constexpr Scope scope = Scope::pair;
+
+  /// The force at touch is twice a grain's weight, but no liquid pulls harder than water.
+  static Parameters strong(const GrainScale& g) {
+    const double tension = 2.0 * g.weight() / (2.0 * unit::pi * g.radius);
+    return {tension < 0.073 ? tension : 0.073, 1e-3, 0.0};
+  }
+
   static constexpr int history_columns = 1;  ///< 1 while there is a bridge, else 0
 
   static Coefficients prepare(const Parameters& p, const PairElastic&) {

@@ -50,6 +50,9 @@ struct Hysteresis {
   };
   static constexpr Stage stage = Stage::dissipation;
   static constexpr Scope scope = Scope::pair;
+
+  static constexpr Parameters strong(const GrainScale&) { return {2.0}; }
+
   static constexpr int history_columns = 1;
 
   static Coefficients prepare(const Parameters& p, const PairElastic&) { return p; }

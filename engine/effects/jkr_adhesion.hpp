@@ -55,6 +55,12 @@ struct JkrAdhesion {
   };
   static constexpr Stage stage = Stage::adhesion;
   static constexpr Scope scope = Scope::pair;
+
+  /// The pull-off is twice a grain's weight.
+  static Parameters strong(const GrainScale& g) {
+    return {2.0 * g.weight() / (1.5 * unit::pi * 0.5 * g.radius)};
+  }
+
   static constexpr int history_columns = 1;  ///< 1 while the surfaces hold, else 0
 
   static Coefficients prepare(const Parameters& p, const PairElastic& pair) {

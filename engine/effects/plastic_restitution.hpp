@@ -51,6 +51,15 @@ struct PlasticRestitution {
   };
   static constexpr Stage stage = Stage::dissipation;
   static constexpr Scope scope = Scope::pair;
+
+  /// Contacts yield in collisions from 0.1 m/s on.
+  static Parameters strong(const GrainScale& g) {
+    const double r = 0.5 * g.radius, speed = 0.1;
+    const double spring = 4.0 / 3.0 * g.elastic.modulus * std::sqrt(r);
+    const double yield = std::pow(1.25 * speed * speed * 0.5 * g.mass() / spring, 0.4);
+    return {0.5 * unit::pi / std::sqrt(yield / r)};
+  }
+
   static constexpr int history_columns = 1;
 
   static Coefficients prepare(const Parameters& p, const PairElastic& pair) {

@@ -44,6 +44,9 @@ struct TwistingResistance {
   };
   static constexpr Stage stage = Stage::rolling;
   static constexpr Scope scope = Scope::pair;
+
+  static constexpr Parameters strong(const GrainScale&) { return {0.2}; }
+
   static constexpr int history_columns = 1;
 
   static Coefficients prepare(const Parameters& p, const PairElastic&) { return p; }

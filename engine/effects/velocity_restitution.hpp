@@ -20,6 +20,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "engine/effect.hpp"
 
@@ -53,6 +54,13 @@ struct VelocityRestitution {
   };
   static constexpr Stage stage = Stage::dissipation;
   static constexpr Scope scope = Scope::pair;
+
+  /// A collision at 1 m/s loses a quarter of its speed: C1 s = 1/4.
+  static Parameters strong(const GrainScale& g) {
+    const double spring = 4.0 / 3.0 * g.elastic.modulus * std::sqrt(0.5 * g.radius);
+    return {0.25 / (1.15344 * 1.5 * std::pow(spring / (0.5 * g.mass()), 0.4))};
+  }
+
   static constexpr int history_columns = 0;
 
   static Coefficients prepare(const Parameters& p, const PairElastic& pair) {

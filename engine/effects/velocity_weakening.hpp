@@ -54,6 +54,9 @@ struct VelocityWeakening {
   };
   static constexpr Stage stage = Stage::friction;
   static constexpr Scope scope = Scope::pair;
+
+  static constexpr Parameters strong(const GrainScale&) { return {0.5, 0.01}; }
+
   static constexpr int history_columns = 0;
 
   static Coefficients prepare(const Parameters& p, const PairElastic&) { return p; }

@@ -67,7 +67,7 @@ struct Library {
 };
 
 const std::vector<Library> libraries{
-    {"Eigen/", {"calibrator/"}},
+    {"Eigen/", {"calibrator/", "tests/calibrator/", "tests/support/"}},
     {"nlopt", {"calibrator/optimiser.cpp"}},
     {"sqlite3", {"db/sqlite.cpp", "db/sqlite.hpp"}},
     {"httplib", {"server/api/http_server.cpp", "tests/"}},

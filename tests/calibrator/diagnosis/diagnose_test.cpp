@@ -55,7 +55,7 @@ TEST_CASE("a diagnosis asked twice has the same answer to the bit", "[calibrator
 
 TEST_CASE("effects with one trace are reported as a family", "[calibrator]") {
   stand_in::Settings wet;
-  wet.readings = stand_in::at_moisture(14.0);
+  wet.readings = stand_in::at_moisture(18.0);
   const auto problem = stand_in::make_problem(5, {{"jkr", 0.9}}, wet);
   const Diagnosis diagnosis = stand_in::diagnose(problem);
   REQUIRE(diagnosis.verdict == DiagnosisVerdict::family);
