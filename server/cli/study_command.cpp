@@ -108,20 +108,18 @@ int study_command(const StudyCommand& command) {
                 [&](std::string_view part, std::size_t done, std::size_t all, bool stored) {
                   progress.trial(part, done, all, stored);
                 });
-  if (!result) {
-    std::cerr << "\nrepose: stopped. Every finished evaluation is kept in "
-              << command.database.string() << "; the same command goes on where it was.\n";
-    return exit_code::interrupted;
-  }
   const std::string name = study->name + (command.quick ? "-quick" : "");
-  const std::string text = print_study_result(*result);
+  const std::string text = print_study_result(result);
   write(command.output / (name + ".json"), text + "\n");
   write(command.output / (name + ".html"),
-        print_study_report(*result, {command_text(command), time_now()}));
-  std::cout << (json ? text + "\n" : print_study_summary(*result));
+        print_study_report(result, {command_text(command), time_now()}));
+  std::cout << (json ? text + "\n" : print_study_summary(result));
   const std::string path = (command.output / name).string();
   (json ? std::cerr : std::cout) << "\nReport: " << path << ".html\nNumbers: " << path << ".json\n";
-  return exit_code::done;
+  if (result.missing == 0) return exit_code::done;
+  std::cerr << "repose: stopped. Every finished evaluation is kept in " << command.database.string()
+            << "; the same command goes on where it was.\n";
+  return exit_code::interrupted;
 }
 
 }  // namespace repose::server

@@ -130,6 +130,11 @@ std::optional<Explained> explain(const StudyResult& result,
 
 std::vector<std::string> findings(const StudyResult& result) {
   std::vector<std::string> sentences;
+  if (result.missing > 0) {
+    sentences.push_back(
+        "Unfinished: " + of(static_cast<int>(result.missing), static_cast<int>(result.trials)) +
+        " simulations are missing, and the search for the best set.");
+  }
   double worst = 0.0;
   for (const DropRow& row : drop_rows(result)) {
     if (!std::isnan(row.percent)) worst = std::max(worst, std::abs(row.percent));
