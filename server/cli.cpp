@@ -50,7 +50,9 @@ constexpr const char* calibrate_footer =
 
 constexpr const char* study_footer =
     "Every finished evaluation is kept in the database: the same command goes on where an\n"
-    "interrupted one was, and prints again what is complete without simulating.";
+    "interrupted one was, and what is complete is printed again without simulating. Ctrl-C stops "
+    "and\n"
+    "reports what there is.";
 
 CLI::Option* add_database(CLI::App& command, std::filesystem::path& database) {
   return command

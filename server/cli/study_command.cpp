@@ -17,6 +17,7 @@
 #include "server/json/published_study_json.hpp"
 #include "server/json/study_result_json.hpp"
 #include "server/report/number_text.hpp"
+#include "server/report/study_report.hpp"
 #include "server/studies/study_runner.hpp"
 
 namespace repose::server {
@@ -76,6 +77,10 @@ void write(const std::filesystem::path& path, const std::string& text) {
   }
 }
 
+std::string command_text(const StudyCommand& command) {
+  return "repose study " + command.name + (command.quick ? " --quick" : "");
+}
+
 }  // namespace
 
 int study_command(const StudyCommand& command) {
@@ -103,18 +108,18 @@ int study_command(const StudyCommand& command) {
                 [&](std::string_view part, std::size_t done, std::size_t all, bool stored) {
                   progress.trial(part, done, all, stored);
                 });
-  if (!result) {
-    std::cerr << "\nrepose: stopped. Every finished evaluation is kept in "
-              << command.database.string() << "; the same command goes on where it was.\n";
-    return exit_code::interrupted;
-  }
   const std::string name = study->name + (command.quick ? "-quick" : "");
-  const std::string text = print_study_result(*result);
+  const std::string text = print_study_result(result);
   write(command.output / (name + ".json"), text + "\n");
-  std::cout << (json ? text + "\n" : print_study_summary(*result));
-  (json ? std::cerr : std::cout) << "\nWritten: " << (command.output / (name + ".json")).string()
-                                 << "\n";
-  return exit_code::done;
+  write(command.output / (name + ".html"),
+        print_study_report(result, {command_text(command), time_now()}));
+  std::cout << (json ? text + "\n" : print_study_summary(result));
+  const std::string path = (command.output / name).string();
+  (json ? std::cerr : std::cout) << "\nReport: " << path << ".html\nNumbers: " << path << ".json\n";
+  if (result.missing == 0) return exit_code::done;
+  std::cerr << "repose: stopped. Every finished evaluation is kept in " << command.database.string()
+            << "; the same command goes on where it was.\n";
+  return exit_code::interrupted;
 }
 
 }  // namespace repose::server

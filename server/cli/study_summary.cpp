@@ -1,36 +1,13 @@
 #include "server/cli/study_summary.hpp"
 
-#include <cmath>
-
 #include "server/cli/text_table.hpp"
 #include "server/report/number_text.hpp"
+#include "server/report/study_words.hpp"
 #include "server/studies/study_findings.hpp"
 
 namespace repose::server {
 
 namespace {
-
-/// "706.5 (1.2)": mean and standard deviation, or how it failed.
-std::string shown(const Sample& sample) {
-  if (sample.values.empty()) return sample.failed > 0 ? "failed" : "-";
-  std::string text = fixed_text(sample.mean(), 1);
-  if (sample.values.size() > 1) text += " (" + fixed_text(sample.deviation(), 1) + ")";
-  return sample.failed > 0 ? text + " *" : text;
-}
-
-std::string shown(const PublishedNumber& number) {
-  return fixed_text(number.mean, 1) + " (" + fixed_text(number.deviation, 1) + ")";
-}
-
-std::string shown(const Trend& trend) {
-  if (!trend.agrees) return "-";
-  return std::string(*trend.agrees ? "agrees" : "opposite") + (trend.clear() ? "" : "?");
-}
-
-std::string signed_text(double value, int decimals) {
-  if (std::isnan(value)) return "-";
-  return (value > 0.0 ? "+" : "") + fixed_text(value, decimals);
-}
 
 std::string table_text(const StudyResult& result,
                        const StudyTable& table,
@@ -44,10 +21,10 @@ std::string table_text(const StudyResult& result,
       const Sample& ours = result.sample(run, what.experiment);
       text.row({run,
                 difference_text(*result.study, run),
-                shown(paper->second),
-                shown(ours),
+                published_text(paper->second),
+                sample_text(ours),
                 signed_text(ours.mean() - paper->second.mean, 1),
-                shown(trend(result, run, what))});
+                trend_text(trend(result, run, what))});
     }
   }
   return table.table + ", " + what.experiment + ", " + what.unit + "\n" + text.str() + "\n";
@@ -61,8 +38,8 @@ std::string variants_text(const StudyResult& result, const StudyExperiment& what
     if (!explained) continue;
     text.row({variant.variant,
               variant.kind,
-              shown(explained->sample),
-              signed_text(explained->change, 1) + " +- " + fixed_text(explained->error, 1),
+              sample_text(explained->sample),
+              signed_text(explained->change, 1) + " +- " + known_text(explained->error, 1),
               signed_text(100.0 * explained->share, 0) + " %",
               signed_text(explained->left, 1)});
   }
@@ -75,8 +52,8 @@ std::string cost_text(const StudyResult& result) {
     std::vector<std::string> row{run.run};
     for (const StudyExperiment& what : result.study->experiments) {
       const CostRatio ratio = cost_ratio(result, run.run, what.experiment);
-      row.push_back(fixed_text(ratio.paper, 2));
-      row.push_back(fixed_text(ratio.ours, 2));
+      row.push_back(known_text(ratio.paper, 2));
+      row.push_back(known_text(ratio.ours, 2));
     }
     text.row(std::move(row));
   }

@@ -147,6 +147,7 @@ std::string print_study_result(const StudyResult& result) {
                   {"fidelity", engine::fidelity_names.at(fidelity)},
                   {"engine_version", result.engine_version},
                   {"evaluations", result.trials},
+                  {"missing", result.missing},
                   {"grain_steps", result.grain_steps},
                   {"drop", drop_json(result)},
                   {"tables", std::move(tables)},

@@ -9,7 +9,7 @@
 #include "server/report/chart.hpp"
 #include "server/report/label.hpp"
 #include "server/report/number_text.hpp"
-#include "server/report/report_style.hpp"
+#include "server/report/page.hpp"
 #include "server/report/svg.hpp"
 #include "server/report/words.hpp"
 
@@ -22,36 +22,6 @@ using calibrator::Measurement;
 using calibrator::Prediction;
 
 namespace {
-
-std::string element(std::string_view name, std::string_view words, std::string_view style = {}) {
-  const std::string tag(name);
-  const std::string of = style.empty() ? "" : " class=\"" + std::string(style) + "\"";
-  return "<" + tag + of + ">" + escaped(words) + "</" + tag + ">";
-}
-
-/// A cell of a table; its column's head stands with it where the page is too narrow for columns.
-std::string cell(std::string_view head, std::string_view words, std::string_view style = {}) {
-  return "<td data-head=\"" + escaped(head) + "\" class=\"" + std::string(style) + "\">" +
-         "<span>" + escaped(words) + "</span></td>";
-}
-
-std::string described(std::string_view term, std::string_view what) {
-  return element("dt", term) + element("dd", what) + "\n";
-}
-
-/// The undetermined intervals' pattern, shared by the charts of the page.
-constexpr std::string_view swatches =
-    "<svg class=\"swatches\" aria-hidden=\"true\"><defs><pattern id=\"hatch\" width=\"6\" "
-    "height=\"6\" patternUnits=\"userSpaceOnUse\" patternTransform=\"rotate(45)\"><rect "
-    "width=\"2.4\" height=\"6\" style=\"fill:var(--open)\"/></pattern></defs></svg>\n";
-
-std::string head(std::string_view title) {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-         "<title>" +
-         escaped(title) + "</title>\n<style>" + std::string(report_style) +
-         "</style>\n</head>\n<body>\n" + std::string(swatches) + "<main>\n";
-}
 
 std::string_view style_of(Verdict verdict) {
   switch (verdict) {
@@ -283,10 +253,10 @@ std::string print_report(const CalibrationDocument& document,
                          const Provenance& provenance) {
   const std::string name =
       document.name.empty() ? "Calibration " + std::to_string(document.id) : document.name;
-  return head(name + ": calibration report") + "<header>" +
+  return page_head(name + ": calibration report") + "<header>" +
          element("p", "Calibration report", "kind") + element("h1", name) + "</header>\n" +
          body(document, pictures) + provenance_section(document, provenance) +
-         "</main>\n</body>\n</html>\n";
+         std::string(page_foot);
 }
 
 }  // namespace repose::server

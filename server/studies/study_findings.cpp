@@ -5,16 +5,11 @@
 
 #include "engine/parameter_set.hpp"
 #include "server/report/number_text.hpp"
+#include "server/report/study_words.hpp"
 
 namespace repose::server {
 
 namespace {
-
-std::string sentence_name(const StudyExperiment& what) {
-  std::string text = what.observable;
-  std::ranges::replace(text, '_', ' ');
-  return text;
-}
 
 std::string with_unit(double value, int decimals, const StudyExperiment& what) {
   return fixed_text(value, decimals) + " " + what.unit;
@@ -32,8 +27,9 @@ std::string offset_sentence(const StudyResult& result, const StudyExperiment& wh
     differences.values.push_back(ours - printed->second.mean);
   }
   const double mean = differences.mean();
-  return "Over " + std::to_string(differences.values.size()) + " runs our " + sentence_name(what) +
-         " is " + with_unit(std::abs(mean), 1, what) + (mean < 0.0 ? " below" : " above") +
+  return "Over " + std::to_string(differences.values.size()) + " runs our " +
+         observable_text(what) + " is " + with_unit(std::abs(mean), 1, what) +
+         (mean < 0.0 ? " below" : " above") +
          " the paper's on average (standard deviation of the differences " +
          with_unit(differences.deviation(), 1, what) + ").";
 }
@@ -43,7 +39,7 @@ std::string trend_sentence(const StudyResult& result,
                            const StudyExperiment& what) {
   const TrendCount count = count_trends(result, table, what);
   const int clear = count.clear_agree + count.clear_opposite;
-  return table.table + ", " + sentence_name(what) +
+  return table.table + ", " + observable_text(what) +
          ": the change against the base has the paper's sign in " +
          of(count.agree, count.agree + count.opposite) +
          " runs; where both changes exceed twice their standard error, in " +
@@ -54,10 +50,10 @@ std::string best_sentence(const StudyResult& result, const StudyExperiment& what
   const Sample& found = result.search->samples.at(what.experiment);
   const Sample& theirs = result.sample(result.study->best, what.experiment);
   const auto percent = [&](double value) {
-    return fixed_text(100.0 * (value / what.target - 1.0), 2) + " %";
+    return signed_text(100.0 * (value / what.target - 1.0), 2) + " %";
   };
   const double printed = result.study->run(result.study->best).printed.at(what.experiment).mean;
-  return "Best set, " + sentence_name(what) + " against the target of " +
+  return "Best set, " + observable_text(what) + " against the target of " +
          with_unit(what.target, 1, what) + ": ours " + with_unit(found.mean(), 1, what) + " (" +
          percent(found.mean()) + "); the paper's " + result.study->best + " gives " +
          with_unit(theirs.mean(), 1, what) + " here (" + percent(theirs.mean()) + ") and gave " +
@@ -85,7 +81,7 @@ std::string cost_sentence(const StudyResult& result) {
 std::string gap_sentence(const StudyResult& result, const StudyExperiment& what) {
   const double printed = result.study->run(result.study->base).printed.at(what.experiment).mean;
   const double ours = result.sample(result.study->base, what.experiment).mean();
-  std::string text = "The base run: " + sentence_name(what) + " " + with_unit(ours, 1, what) +
+  std::string text = "The base run: " + observable_text(what) + " " + with_unit(ours, 1, what) +
                      " here, " + with_unit(printed, 1, what) + " in the paper.";
   const StudyVariant& last = result.study->variants.back();
   const auto all = explain(result, last.variant, what);
@@ -134,8 +130,15 @@ std::optional<Explained> explain(const StudyResult& result,
 
 std::vector<std::string> findings(const StudyResult& result) {
   std::vector<std::string> sentences;
+  if (result.missing > 0) {
+    sentences.push_back(
+        "Unfinished: " + of(static_cast<int>(result.missing), static_cast<int>(result.trials)) +
+        " simulations are missing, and the search for the best set.");
+  }
   double worst = 0.0;
-  for (const DropRow& row : drop_rows(result)) worst = std::max(worst, std::abs(row.percent));
+  for (const DropRow& row : drop_rows(result)) {
+    if (!std::isnan(row.percent)) worst = std::max(worst, std::abs(row.percent));
+  }
   sentences.push_back("Drop test: the restitution read differs from the one given by at most " +
                       fixed_text(worst, 2) + " % in any run.");
   for (const StudyExperiment& what : result.study->experiments) {

@@ -73,6 +73,7 @@ struct StudyResult {
   std::optional<SearchResult> search;
   double grain_steps = 0.0;  ///< of all replicates together, repeated ones once a use
   std::size_t trials = 0;
+  std::size_t missing = 0;  ///< of these not run, since the study was asked to stop
 
   /// Of a run; an empty sample where there is none.
   [[nodiscard]] const Sample& sample(const std::string& run, const std::string& experiment) const;

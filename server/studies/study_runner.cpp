@@ -30,6 +30,12 @@ struct Question {
   std::vector<Trial> trials;
 };
 
+/// Whether it was not run, since the study was asked to stop.
+bool is_missing(const Evaluation& evaluation) {
+  const auto* failure = std::get_if<engine::Failure>(&evaluation.outcome);
+  return failure != nullptr && failure->kind == engine::FailureKind::cancelled;
+}
+
 /// Adds one evaluation to a sample; means are sums until all are in.
 void add(Sample& sample, const Question& question, const Evaluation& evaluation) {
   sample.grain_steps += static_cast<double>(evaluation.effort.grain_steps);
@@ -38,6 +44,7 @@ void add(Sample& sample, const Question& question, const Evaluation& evaluation)
   sample.largest_overlap_at_rest =
       std::max(sample.largest_overlap_at_rest, evaluation.effort.overlap_at_rest);
   if (const auto* failure = std::get_if<engine::Failure>(&evaluation.outcome)) {
+    if (is_missing(evaluation)) return;
     if (sample.failed++ == 0) {
       sample.failure =
           std::string(engine::failure_kind_names.at(static_cast<std::size_t>(failure->kind))) +
@@ -53,7 +60,9 @@ void add(Sample& sample, const Question& question, const Evaluation& evaluation)
 Sample sample_of(const Question& question, std::span<const Evaluation> evaluations) {
   Sample sample;
   for (const Evaluation& evaluation : evaluations) add(sample, question, evaluation);
-  const double count = static_cast<double>(std::max<std::size_t>(1, evaluations.size()));
+  const auto run =
+      evaluations.size() - static_cast<std::size_t>(std::ranges::count_if(evaluations, is_missing));
+  const auto count = static_cast<double>(std::max<std::size_t>(1, run));
   sample.grain_steps /= count;
   sample.simulated_seconds /= count;
   return sample;
@@ -72,14 +81,13 @@ class Runner {
     result_.engine_version = engine::version();
   }
 
-  std::optional<StudyResult> run() {
-    runs("drop tests", {drop()});
-    for (const StudyExperiment& experiment : study_.experiments) {
-      runs(experiment.experiment + " of every run", {experiment});
-    }
+  StudyResult run() {
+    runs("drop tests", drop());
     variants();
-    search();
-    if (stopped_) return std::nullopt;
+    for (const StudyExperiment& experiment : study_.experiments) {
+      runs(experiment.experiment + " of every run", experiment);
+    }
+    if (result_.missing == 0) search();
     return std::move(result_);
   }
 
@@ -99,9 +107,8 @@ class Runner {
             replicate_trials(parameters, experiment, replicates_of(what, size_), seed)};
   }
 
-  /// Answers all questions at once, so that every worker is busy; nothing where it was stopped.
+  /// Answers all questions at once, so that every worker is busy.
   std::vector<Sample> ask(const std::string& part, const std::vector<Question>& questions) {
-    if (stopped_) return {};
     std::vector<Trial> trials;
     for (const Question& each : questions) {
       trials.insert(trials.end(), each.trials.begin(), each.trials.end());
@@ -110,10 +117,6 @@ class Runner {
       if (observer_) observer_(part, done, all, stored);
     };
     const std::vector<Evaluation> evaluations = workers_.run(trials, stop_, tell);
-    if (workers_.interrupted()) {
-      stopped_ = true;
-      return {};
-    }
     note(evaluations);
     std::vector<Sample> samples;
     std::size_t from = 0;
@@ -127,29 +130,28 @@ class Runner {
 
   void note(std::span<const Evaluation> evaluations) {
     result_.trials += evaluations.size();
+    result_.missing += static_cast<std::size_t>(std::ranges::count_if(evaluations, is_missing));
     for (const Evaluation& evaluation : evaluations) {
       result_.grain_steps += static_cast<double>(evaluation.effort.grain_steps);
     }
   }
 
-  /// Every run of the study in these experiments, where the paper ran it. The paper's drop test was
+  /// Every run of the study in this experiment, where the paper ran it. The paper's drop test was
   /// for every combination.
-  void runs(const std::string& part, const std::vector<StudyExperiment>& experiments) {
+  void runs(const std::string& part, const StudyExperiment& what) {
     std::vector<Question> questions;
     std::vector<std::string> names;
-    for (const StudyExperiment& what : experiments) {
-      for (const StudyRun& run : study_.runs) {
-        if (what.experiment != study_.drop_experiment && !run.printed.contains(what.experiment)) {
-          continue;
-        }
-        questions.push_back(question(
-            what, run_parameters(study_, run.run), {what.experiment, fidelity_of(size_), {}}));
-        names.push_back(run.run);
-      }
+    for (const StudyRun& run : study_.runs) {
+      const bool asked =
+          what.experiment == study_.drop_experiment || run.printed.contains(what.experiment);
+      if (!asked) continue;
+      questions.push_back(question(
+          what, run_parameters(study_, run.run), {what.experiment, fidelity_of(size_), {}}));
+      names.push_back(run.run);
     }
     std::vector<Sample> samples = ask(part, questions);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      result_.runs[names[i]][questions[i].experiment] = std::move(samples[i]);
+      result_.runs[names[i]][what.experiment] = std::move(samples[i]);
     }
   }
 
@@ -174,14 +176,12 @@ class Runner {
   }
 
   void search() {
-    if (stopped_) return;
     SearchResult found{study_search(study_, size_), {}, {}};
     const calibrator::Evaluator evaluator = [&](std::span<const Trial> trials) {
       const auto tell = [&](std::size_t done, std::size_t all, bool stored) {
         if (observer_) observer_("search, a batch", done, all, stored);
       };
       auto evaluations = workers_.run(trials, stop_, tell);
-      stopped_ = stopped_ || workers_.interrupted();
       note(evaluations);
       return evaluations;
     };
@@ -204,16 +204,15 @@ class Runner {
   const std::stop_token stop_;
   const StudyObserver& observer_;
   StudyResult result_;
-  bool stopped_ = false;
 };
 
 }  // namespace
 
-std::optional<StudyResult> run_study(const PublishedStudy& study,
-                                     StudySize size,
-                                     Workers& workers,
-                                     const std::stop_token& stop,
-                                     const StudyObserver& observer) {
+StudyResult run_study(const PublishedStudy& study,
+                      StudySize size,
+                      Workers& workers,
+                      const std::stop_token& stop,
+                      const StudyObserver& observer) {
   return Runner(study, size, workers, stop, observer).run();
 }
 

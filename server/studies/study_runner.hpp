@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <stop_token>
 #include <string_view>
 
@@ -17,11 +16,12 @@ namespace repose::server {
 using StudyObserver =
     std::function<void(std::string_view part, std::size_t done, std::size_t all, bool stored)>;
 
-/// Nothing where it was asked to stop.
-std::optional<StudyResult> run_study(const PublishedStudy& study,
-                                     StudySize size,
-                                     Workers& workers,
-                                     const std::stop_token& stop,
-                                     const StudyObserver& observer);
+/// Where it was asked to stop, what was complete by then: missing counts the rest, and there is no
+/// search.
+StudyResult run_study(const PublishedStudy& study,
+                      StudySize size,
+                      Workers& workers,
+                      const std::stop_token& stop,
+                      const StudyObserver& observer);
 
 }  // namespace repose::server

@@ -76,6 +76,13 @@ TEST_CASE("evaluate --json prints exactly one JSON object", "[end_to_end]") {
   CHECK(json.contains("engine_version"));
 }
 
+TEST_CASE("a study that is not published is refused with those that are", "[end_to_end]") {
+  const TemporaryFolder folder;
+  const Ran ran = repose("study boac2011 --db " + (folder.path / "a.db").string(), "&1");
+  CHECK(ran.exit_code == 2);
+  CHECK_THAT(ran.output, Contains("did you mean \"boac2010\"?"));
+}
+
 TEST_CASE("the same evaluation gives the same bits", "[end_to_end]") {
   const auto observed = [] {
     const Ran ran = repose("evaluate drop --fidelity draft --seed 5 --json");

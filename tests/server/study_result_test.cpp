@@ -138,25 +138,35 @@ TEST_CASE("a study asked for again is answered from the store, the same to the l
   const StudyObserver count = [&](std::string_view, std::size_t, std::size_t, bool stored) {
     ran += stored ? 0 : 1;
   };
-  const auto first = run_study(study, StudySize::quick, workers, {}, count);
-  REQUIRE(first.has_value());
+  const StudyResult first = run_study(study, StudySize::quick, workers, {}, count);
   CHECK(ran > 4);
-  CHECK(first->sample("2", "drop").mean() == Approx(0.8).margin(0.01));
-  REQUIRE(first->search.has_value());
-  CHECK(first->search->samples.at("drop").values.size() == 2);
+  CHECK(first.sample("2", "drop").mean() == Approx(0.8).margin(0.01));
+  REQUIRE(first.search.has_value());
+  CHECK(first.missing == 0);
+  CHECK(first.search->samples.at("drop").values.size() == 2);
   ran = 0;
-  const auto second = run_study(study, StudySize::quick, workers, {}, count);
-  REQUIRE(second.has_value());
+  const StudyResult second = run_study(study, StudySize::quick, workers, {}, count);
   CHECK(ran == 0);
-  CHECK(print_study_result(*first) == print_study_result(*second));
+  CHECK(print_study_result(first) == print_study_result(second));
 }
 
-TEST_CASE("a study that is asked to stop gives no result", "[server]") {
+TEST_CASE("a study that is asked to stop gives what it has and says what is missing", "[server]") {
   const TemporaryFolder folder;
   const PublishedStudy study = small_study();
   db::Store store(folder / "a.db", db::Access::write);
-  Workers workers(store, {.workers = 2});
+  Workers workers(store, {.workers = 1});
   std::stop_source stop;
-  stop.request_stop();
-  CHECK_FALSE(run_study(study, StudySize::quick, workers, stop.get_token(), {}).has_value());
+  const StudyObserver stop_after_two = [&](std::string_view, std::size_t done, std::size_t, bool) {
+    if (done == 2) stop.request_stop();
+  };
+  const StudyResult part =
+      run_study(study, StudySize::quick, workers, stop.get_token(), stop_after_two);
+  CHECK(part.missing > 0);
+  CHECK(part.missing < part.trials);
+  CHECK(part.sample("1", "drop").mean() == Approx(0.4).margin(0.01));
+  CHECK(part.variants.at(0).samples.at("drop").failed == 0);
+  CHECK_FALSE(part.search.has_value());
+  CHECK_THAT(findings(part).front(), Catch::Contains("Unfinished"));
+  const StudyResult whole = run_study(study, StudySize::quick, workers, {}, {});
+  CHECK(whole.missing == 0);
 }
