@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "calibrator/calibrate.hpp"
-#include "calibrator/diagnosis/diagnose.hpp"
+#include "calibrator/diagnosis/diagnosis.hpp"
 #include "engine/result.hpp"
 #include "server/json/problem.hpp"
 

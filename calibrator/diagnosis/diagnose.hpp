@@ -39,12 +39,6 @@ DiagnosisQuestion question_of(const Calibration& calibration,
                               const Fit& fit,
                               const Tolerances& stated = {});
 
-struct DiagnosisProgress {
-  std::string stage;  ///< "anchor", "probe", "refit NAME", "pair NAME, NAME"
-  int evaluations_done = 0;
-};
-using DiagnosisObserver = std::function<void(const DiagnosisProgress&)>;
-
 /// Pure, as calibrate() is: a resumed diagnosis is a replay. Nothing where it was asked to stop:
 /// runs that were cut short are no evidence.
 std::optional<Diagnosis> diagnose(const DiagnosisQuestion& question,

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -110,5 +112,15 @@ struct Diagnosis {
   int evaluations = 0;                             ///< spent by the diagnosis
   std::vector<std::string> remarks;
 };
+
+/// "tilting_box.static_angle" -> relative spread between codes, 1.
+using Tolerances = std::map<std::string, double>;
+
+/// Told while the work goes on.
+struct DiagnosisProgress {
+  std::string stage;  ///< "anchor", "probe", "refit NAME, NAME"
+  int evaluations_done = 0;
+};
+using DiagnosisObserver = std::function<void(const DiagnosisProgress&)>;
 
 }  // namespace repose::calibrator

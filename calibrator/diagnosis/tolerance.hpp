@@ -9,18 +9,15 @@
 /// The size of an angle is that of its tangent: sin(2 y) / 2 rad for 100 %.
 #pragma once
 
-#include <map>
 #include <span>
 #include <string>
 
 #include <Eigen/Core>
 
+#include "calibrator/diagnosis/diagnosis.hpp"
 #include "calibrator/measurement.hpp"
 
 namespace repose::calibrator {
-
-/// "tilting_box.static_angle" -> relative spread, 1.
-using Tolerances = std::map<std::string, double>;
 
 std::string observable_name(const Measurement& measurement);  ///< "tilting_box.static_angle"
 

@@ -50,7 +50,7 @@ StudyTable read_table(const Json& json) {
 }
 
 DropAccuracy read_accuracy(const Json& json) {
-  return {json.at("restitution").get<double>(),
+  return {json.at("coefficient").get<double>(),
           json.at("percent").at(0).get<double>(),
           json.at("percent").at(1).get<double>()};
 }
