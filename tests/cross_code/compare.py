@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""Runs the bulk experiments on repose, LIGGGHTS and LAMMPS: same grain, apparatus and reading.
+
+  tests/cross_code/compare.py [--scene NAME]... [--seeds N] [--fidelity draft] [--json FILE]
+
+Needs Debian's packages liggghts and lammps, and a built ./build/repose. Every answer is kept in
+--keep as it comes, and not asked for again: an interrupted comparison goes on where it was.
+repose's frames are read again by the rules that the other codes' are read by; both are shown.
+"""
+import argparse
+import json
+import math
+import pathlib
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path.insert(0, str(ROOT / "tests/benchmarks"))  # the decks' physics are the benchmark's
+
+import apparatus  # noqa: E402
+import reading  # noqa: E402
+
+UNITS = {"mm": 1e-3, "m": 1.0, "1": 1.0, "kPa": 1e3, "mm/s": 1e-3, "m/s": 1.0, "kg/s": 1.0,
+         "deg/s": math.pi / 180, "rpm": math.pi / 30, "s": 1.0}
+
+
+def settings(repose, scene, fidelity):
+    """Of the experiment, SI."""
+    text = subprocess.run([repose, "catalogue", "--json"], check=True, capture_output=True).stdout
+    told = next(e for e in json.loads(text)["experiments"] if e["name"] == scene)
+    return {field["name"]: field["default"][fidelity] * UNITS[field["unit"]]
+            for field in told["settings"] if not isinstance(field["default"][fidelity], str)}
+
+
+def run_repose(repose, setup, scene, fidelity, folder):
+    words = [repose, "evaluate", scene, "--seed", setup.seed, "--fidelity", fidelity, "--json"]
+    if setup.read_frames:
+        words += ["--frames", folder, "--frame-interval", setup.frame_interval or 1e6]
+    done = subprocess.run(list(map(str, words)), capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, words))}: {done.stdout}{done.stderr}")
+    told = {o["name"]: o["value"] for o in json.loads(done.stdout)["observations"]}
+    answer = {"repose": told}
+    if setup.read_frames:
+        answer["repose, read here"] = setup.read_frames(reading.vtp_frames(folder))
+    return answer
+
+
+def run_peer(code, program, setup, folder):
+    setup.prepare(folder)
+    deck = (ROOT / f"tests/benchmarks/decks/{code}.in").read_text()
+    for name, text in setup.parts(code).items():
+        deck = deck.replace(f"${name.upper()}$", text)
+    (folder / f"{code}.in").write_text(deck)
+    words = [program, "-in", f"{code}.in", "-log", "none"]
+    for name, value in setup.variables(code).items():
+        words += ["-var", name, str(value)]
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(words)} in {folder} failed:\n{(done.stdout + done.stderr)[-2000:]}")
+    dump = folder / "frames.dump"
+    frames = reading.dump_frames(dump, apparatus.STEP) if dump.exists() else []
+    return {code: setup.read(frames, done.stdout)}
+
+
+def ask(programs, scene, fidelity, seed, keep):
+    """Readings of every code; what is kept is not run again."""
+    answers = {}
+    known = settings(programs["repose"], scene, fidelity)
+    for code, program in programs.items():
+        kept = keep / f"{scene}-{fidelity}-{seed}-{code}.json"
+        if not kept.exists():
+            setup = apparatus.ALL[scene](known, seed)
+            with tempfile.TemporaryDirectory() as folder:
+                folder = pathlib.Path(folder)
+                answer = (run_repose(program, setup, scene, fidelity, folder) if code == "repose"
+                          else run_peer(code, program, setup, folder))
+            kept.write_text(json.dumps(answer))
+            print(f"  {kept.stem}: {answer}", file=sys.stderr, flush=True)
+        answers.update(json.loads(kept.read_text()))
+    return answers
+
+
+def figure(values):
+    spread = f" ({statistics.stdev(values):.2g})" if len(values) > 1 else ""
+    return f"{statistics.mean(values):.4g}{spread}"
+
+
+def apart(ours, theirs):
+    """Difference of the means, and over its standard error."""
+    if len(ours) < 2 or len(theirs) < 2:
+        return ""
+    error = math.sqrt(statistics.variance(ours) / len(ours)
+                      + statistics.variance(theirs) / len(theirs))
+    off = statistics.mean(ours) - statistics.mean(theirs)
+    return f"{off:+.2g}, {abs(off) / error:.1f}" if error > 0 else f"{off:+.2g}"
+
+
+def table(results, codes):
+    others = [code for code in codes if code != "repose"]
+    print("| observable | repose | read again | " + " | ".join(others) + " | "
+          + " | ".join(f"repose less {code}; standard errors" for code in others) + " |")
+    print("|---" * (3 + 2 * len(others)) + "|")
+    for scene, seeds in results.items():
+        for name in seeds[0]["repose"]:
+            def of(code):
+                return [a[code][name] for a in seeds if name in a.get(code, {})]
+            again = of("repose, read here")
+            cells = [f"{scene}, {name}", figure(of("repose")), figure(again) if again else ""]
+            cells += [figure(of(code)) for code in others]
+            cells += [apart(of("repose"), of(code)) for code in others]
+            print("| " + " | ".join(cells) + " |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--scene", action="append", choices=list(apparatus.ALL),
+                        help="default: all")
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--fidelity", choices=["draft", "standard"], default="standard")
+    parser.add_argument("--repose", default=ROOT / "build/repose")
+    parser.add_argument("--liggghts", default=shutil.which("liggghts"))
+    parser.add_argument("--lammps", default=shutil.which("lmp"))
+    parser.add_argument("--keep", type=pathlib.Path, default=ROOT / "build/cross_code")
+    parser.add_argument("--json", type=pathlib.Path, help="write every reading there")
+    asked = parser.parse_args()
+    programs = {"repose": asked.repose, "liggghts": asked.liggghts, "lammps": asked.lammps}
+    programs = {code: program for code, program in programs.items() if program}
+    asked.keep.mkdir(parents=True, exist_ok=True)
+    results = {scene: [ask(programs, scene, asked.fidelity, seed, asked.keep)
+                       for seed in range(1, asked.seeds + 1)]
+               for scene in asked.scene or apparatus.ALL}
+    print(f"{asked.fidelity}, {asked.seeds} seeds; mean (standard deviation)\n")
+    table(results, list(programs))
+    if asked.json:
+        asked.json.write_text(json.dumps({"fidelity": asked.fidelity, "scenes": results}, indent=1))
+
+
+if __name__ == "__main__":
+    main()
