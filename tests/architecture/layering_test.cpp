@@ -68,6 +68,7 @@ struct Library {
 
 const std::vector<Library> libraries{
     {"Eigen/", {"calibrator/", "tests/calibrator/", "tests/support/"}},
+    {"unsupported/Eigen/", {"calibrator/"}},
     {"nlopt", {"calibrator/optimiser.cpp"}},
     {"sqlite3", {"db/sqlite.cpp", "db/sqlite.hpp"}},
     {"httplib", {"server/api/http_server.cpp", "tests/"}},

@@ -105,6 +105,7 @@ Calibration any_calibration(std::uint64_t seed) {
   for (const std::string& name : engine::parameter_names()) {
     const engine::ParameterInfo& info = *engine::find_parameter(name);
     for (const engine::MaterialId material : pair) {
+      if (info.scope == engine::Scope::global && material == pair.back()) continue;  // is one
       std::vector<engine::MaterialId> between;
       if (info.scope != engine::Scope::global) between.push_back(material);
       if (info.scope == engine::Scope::pair) between.push_back(engine::MaterialId::grain);
