@@ -154,15 +154,16 @@ std::optional<std::string> Statement::text_or_null(int column) const {
   return is_null(column) ? std::nullopt : std::optional(text(column));
 }
 
-Transaction::Transaction(Connection& connection) : connection_(connection) {
-  connection_.run("BEGIN IMMEDIATE");
+Transaction::Transaction(Connection& connection)
+    : connection_(connection), within_(connection.in_transaction()) {
+  connection_.run(within_ ? "SAVEPOINT part" : "BEGIN IMMEDIATE");
 }
 
 Transaction::~Transaction() {
   // A failed statement may have rolled back by itself.
   if (!open_ || !connection_.in_transaction()) return;
   try {
-    connection_.run("ROLLBACK");
+    connection_.run(within_ ? "ROLLBACK TO part; RELEASE part" : "ROLLBACK");
   } catch (const Error&) {
     // The connection is beyond use; its next statement will say so.
     return;
@@ -170,7 +171,7 @@ Transaction::~Transaction() {
 }
 
 void Transaction::commit() {
-  connection_.run("COMMIT");
+  connection_.run(within_ ? "RELEASE part" : "COMMIT");
   open_ = false;
 }
 

@@ -78,7 +78,8 @@ class Statement {
   int next_ = 1;
 };
 
-/// Everything between its making and commit() happens, or nothing.
+/// Everything between its making and commit() happens, or nothing. One within another is part of
+/// it.
 class Transaction {
  public:
   explicit Transaction(Connection& connection);
@@ -89,6 +90,7 @@ class Transaction {
 
  private:
   Connection& connection_;
+  bool within_;  ///< another one
   bool open_ = true;
 };
 

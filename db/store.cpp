@@ -1,10 +1,7 @@
 #include "db/store.hpp"
 
-#include <mutex>
-
-#include "db/lock.hpp"
 #include "db/migrate.hpp"
-#include "db/sqlite.hpp"
+#include "db/store_state.hpp"
 
 namespace repose::db {
 
@@ -40,15 +37,6 @@ std::string select_calibration(bool documents, std::string_view rest) {
          " FROM calibration " + std::string(rest);
 }
 
-EvaluationRecord evaluation_of(const Statement& row, int first) {
-  return {row.text(first),
-          row.text(first + 1),
-          row.text(first + 2),
-          row.real(first + 3),
-          row.text(first + 4),
-          row.integer(first + 5)};
-}
-
 void set_up(Connection& connection, Access access) {
   connection.run("PRAGMA foreign_keys = ON");
   connection.run("PRAGMA trusted_schema = OFF");
@@ -66,21 +54,34 @@ void set_up(Connection& connection, Access access) {
 
 }  // namespace
 
-/// One connection writes, reads and checkpoints under one mutex: two connections of one process
-/// that write or checkpoint at the same moment can corrupt a WAL file in this version of SQLite,
-/// and nothing here is so frequent that it would wait.
-struct Store::State {
-  State(const std::filesystem::path& file, Access access)
-      : lock(access == Access::write ? std::make_unique<FileLock>(file) : nullptr),
-        connection(file,
-                   access == Access::write ? Connection::Mode::write : Connection::Mode::read) {
-    set_up(connection, access);
-  }
+EvaluationRecord evaluation_of(const Statement& row, int first) {
+  return {row.text(first),
+          row.text(first + 1),
+          row.text(first + 2),
+          row.real(first + 3),
+          row.text(first + 4),
+          row.integer(first + 5)};
+}
 
-  std::unique_ptr<FileLock> lock;
-  Connection connection;
-  std::mutex mutex;
-};
+void note_keys(Connection& connection,
+               const char* insertion,
+               std::int64_t owner,
+               std::int64_t first_ordinal,
+               const std::vector<std::string>& keys) {
+  Transaction transaction(connection);
+  Statement insert = connection.prepare(insertion);
+  std::int64_t ordinal = first_ordinal;
+  for (const std::string& key : keys) {
+    insert.bind(owner).bind(ordinal++).bind(std::string_view(key)).run();
+  }
+  transaction.commit();
+}
+
+Store::State::State(const std::filesystem::path& file, Access access)
+    : lock(access == Access::write ? std::make_unique<FileLock>(file) : nullptr),
+      connection(file, access == Access::write ? Connection::Mode::write : Connection::Mode::read) {
+  set_up(connection, access);
+}
 
 Store::Store(const std::filesystem::path& file, Access access)
     : state_(std::make_unique<State>(file, access)) {}
@@ -256,24 +257,6 @@ bool Store::add_evaluation(const EvaluationRecord& evaluation) {
       .run();
   return state_->connection.changes() == 1;
 }
-
-namespace {
-
-void note_keys(Connection& connection,
-               const char* insertion,
-               std::int64_t owner,
-               std::int64_t first_ordinal,
-               const std::vector<std::string>& keys) {
-  Transaction transaction(connection);
-  Statement insert = connection.prepare(insertion);
-  std::int64_t ordinal = first_ordinal;
-  for (const std::string& key : keys) {
-    insert.bind(owner).bind(ordinal++).bind(std::string_view(key)).run();
-  }
-  transaction.commit();
-}
-
-}  // namespace
 
 void Store::note_used(std::int64_t calibration,
                       std::int64_t first_ordinal,

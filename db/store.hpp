@@ -106,6 +106,10 @@ class Store {
                                                  std::optional<std::int64_t> after) const;
 
  private:
+  friend class EventStore;        // db/event_store.hpp
+  friend class MeasurementStore;  // db/measurement_store.hpp
+  friend class ReplyStore;        // db/reply_store.hpp
+  friend struct Inspection;       // db/figures.cpp
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -1,0 +1,125 @@
+#include "db/measurement_store.hpp"
+
+#include "db/store_state.hpp"
+
+namespace repose::db {
+
+namespace {
+
+std::optional<std::string_view> view(const std::optional<std::string>& text) {
+  return text ? std::optional<std::string_view>(*text) : std::nullopt;
+}
+
+constexpr std::string_view select_set =
+    "SELECT id, name, version, material, created_at, measurements FROM measurement_set ";
+
+MeasurementSetRecord set_of(const Statement& row) {
+  return {row.integer(0), row.text(1), row.integer(2), row.text(3), row.integer(4), row.text(5)};
+}
+
+}  // namespace
+
+MeasurementSetRecord MeasurementStore::put(const std::string& name,
+                                           const std::string& material,
+                                           const std::string& measurements,
+                                           std::int64_t now) {
+  const std::scoped_lock hold(store_.state_->mutex);
+  Connection& connection = store_.state_->connection;
+  Transaction transaction(connection);
+  const auto newest = find(name, std::nullopt);
+  if (newest && newest->material == material && newest->measurements == measurements) {
+    return *newest;
+  }
+  const std::int64_t version = newest ? newest->version + 1 : 1;
+  connection
+      .prepare(
+          "INSERT INTO measurement_set (name, version, material, created_at, measurements) "
+          "VALUES (?, ?, ?, ?, ?)")
+      .bind(std::string_view(name))
+      .bind(version)
+      .bind(std::string_view(material))
+      .bind(now)
+      .bind(std::string_view(measurements))
+      .run();
+  const std::int64_t id = connection.last_id();
+  transaction.commit();
+  return {id, name, version, material, now, measurements};
+}
+
+std::optional<MeasurementSetRecord> MeasurementStore::find(
+    const std::string& name, const std::optional<std::int64_t>& version) const {
+  const std::scoped_lock hold(store_.state_->mutex);
+  Statement row = store_.state_->connection.prepare(
+      std::string(select_set) +
+      "WHERE name = ?1 AND (?2 IS NULL OR version = ?2) ORDER BY version DESC LIMIT 1");
+  row.bind(std::string_view(name)).bind(version);
+  if (!row.step()) return std::nullopt;
+  return set_of(row);
+}
+
+std::vector<MeasurementSetRecord> MeasurementStore::list(
+    int limit, const std::optional<std::string>& after) const {
+  const std::scoped_lock hold(store_.state_->mutex);
+  Statement row = store_.state_->connection.prepare(
+      "SELECT id, name, max(version), material, created_at, '' FROM measurement_set "
+      "WHERE ?1 IS NULL OR name > ?1 GROUP BY name ORDER BY name LIMIT ?2");
+  row.bind(view(after)).bind(static_cast<std::int64_t>(limit));
+  std::vector<MeasurementSetRecord> records;
+  while (row.step()) records.push_back(set_of(row));
+  return records;
+}
+
+std::int64_t MeasurementStore::add_calibration(const std::string& name,
+                                               const std::string& request,
+                                               const std::string& digest,
+                                               const SourceRecord& source,
+                                               std::int64_t now) {
+  const std::scoped_lock hold(store_.state_->mutex);
+  Transaction transaction(store_.state_->connection);
+  const std::int64_t calibration = store_.add_calibration(name, request, digest, now);
+  store_.state_->connection
+      .prepare(
+          "INSERT INTO calibration_source (calibration_id, material, measurement_set_id) "
+          "VALUES (?, ?, ?)")
+      .bind(calibration)
+      .bind(view(source.material))
+      .bind(source.set)
+      .run();
+  transaction.commit();
+  return calibration;
+}
+
+std::vector<FitRecord> MeasurementStore::fits(const FitFilter& filter, int limit) const {
+  const std::scoped_lock hold(store_.state_->mutex);
+  Statement row = store_.state_->connection.prepare(
+      "SELECT c.id, c.name, c.state, c.created_at, c.started_at, c.finished_at, c.request_digest, "
+      "c.misfit, c.fit, s.material, m.name, m.version FROM calibration c "
+      "LEFT JOIN calibration_source s ON s.calibration_id = c.id "
+      "LEFT JOIN measurement_set m ON m.id = s.measurement_set_id "
+      "WHERE c.state = 'done' AND c.fit IS NOT NULL AND (?1 IS NULL OR s.material = ?1) "
+      "AND (?2 IS NULL OR c.name = ?2) AND (?3 IS NULL OR c.id < ?3) ORDER BY c.id DESC LIMIT ?4");
+  row.bind(view(filter.material))
+      .bind(view(filter.name))
+      .bind(filter.before)
+      .bind(static_cast<std::int64_t>(limit));
+  std::vector<FitRecord> records;
+  while (row.step()) {
+    FitRecord record;
+    record.calibration.id = row.integer(0);
+    record.calibration.name = row.text(1);
+    record.calibration.state = row.text(2);
+    record.calibration.created_at = row.integer(3);
+    record.calibration.started_at = row.integer_or_null(4);
+    record.calibration.finished_at = row.integer_or_null(5);
+    record.calibration.request_digest = row.text(6);
+    record.calibration.misfit = row.real_or_null(7);
+    record.calibration.fit = row.text_or_null(8);
+    record.material = row.text_or_null(9);
+    record.set = row.text_or_null(10);
+    record.version = row.integer_or_null(11);
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+}  // namespace repose::db

@@ -1,0 +1,36 @@
+/// The inside of the store: its connection, and what several of its verbs need.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "db/lock.hpp"
+#include "db/sqlite.hpp"
+#include "db/store.hpp"
+
+namespace repose::db {
+
+/// One connection writes, reads and checkpoints under one mutex: two connections of one process
+/// that write or checkpoint at the same moment can corrupt a WAL file in this version of SQLite,
+/// and nothing here is so frequent that it would wait.
+struct Store::State {
+  State(const std::filesystem::path& file, Access access);
+
+  std::unique_ptr<FileLock> lock;
+  Connection connection;
+  std::recursive_mutex mutex;  ///< held through the verbs that make one transaction together
+};
+
+/// The six columns of an evaluation from that one on.
+EvaluationRecord evaluation_of(const Statement& row, int first);
+
+/// Inserts (owner, ordinal, key) for each key, all or none.
+void note_keys(Connection& connection,
+               const char* insertion,
+               std::int64_t owner,
+               std::int64_t first_ordinal,
+               const std::vector<std::string>& keys);
+
+}  // namespace repose::db
