@@ -253,6 +253,34 @@ void add_serve(CLI::App& app, ServeCommand& options, Work& work) {
   });
 }
 
+void add_token(CLI::App& app, TokenCommand& options, Work& work) {
+  CLI::App& token =
+      *app.add_subcommand("token", "Make, list and revoke the tokens that users of the API send");
+  token.require_subcommand(1);
+  const auto add = [&](const char* name, const char* what, int (*run)(const TokenCommand&)) {
+    CLI::App& command = *token.add_subcommand(name, what);
+    add_database(command, options.database);
+    command.callback([&, run] {
+      work = [&, run] {
+        if (options.database.empty()) options.database = default_database();
+        return run(options);
+      };
+    });
+    return &command;
+  };
+  CLI::App& create = *add("create", "Make a token; it is shown this once", create_token_command);
+  create.add_option("name", options.name, "Whose it is")->required();
+  create.add_option("--scope", options.scope, "What it is good for")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"read", "submit", "admin"}));
+  create.add_option("--days", options.days, "Days until it expires (default: it does not)")
+      ->check(CLI::Range(1, 36500));
+  CLI::App& list = *add("list", "List the tokens", list_tokens_command);
+  add_json(list, options.form, "One JSON object on standard output");
+  CLI::App& revoke = *add("revoke", "Make a token worthless", revoke_token_command);
+  revoke.add_option("id", options.id, "Which, as `repose token list` names it")->required();
+}
+
 void add_bench_calibrator(CLI::App& bench, BenchCalibratorCommand& options, Work& work) {
   CLI::App& command = *bench.add_subcommand(
       "calibrator", "Evaluations that each method needs where the truth is known");
@@ -367,6 +395,7 @@ struct Commands {
   ListCommand list;
   ShowCommand show;
   ServeCommand serve;
+  TokenCommand token;
   BenchCommand bench;
   BenchCalibratorCommand bench_calibrator;
   MaterialsCommand materials;
@@ -408,6 +437,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_missing_effect(app, commands.missing_effect, work);
   add_report(app, commands.report, work);
   add_serve(app, commands.serve, work);
+  add_token(app, commands.token, work);
   add_list(app, commands.list, work);
   add_show(app, commands.show, work);
   add_bench(app, commands.bench, commands.bench_calibrator, work);

@@ -90,6 +90,18 @@ struct ServeCommand {
 };
 int serve_command(const ServeCommand& command);
 
+struct TokenCommand {
+  std::filesystem::path database;
+  std::string name;              ///< of the one that is made
+  std::string scope = "submit";  ///< one of scope_names
+  int days = 0;                  ///< until it expires; 0: never
+  std::string id;                ///< of the one that is revoked
+  Form form = Form::text;
+};
+int create_token_command(const TokenCommand& command);
+int list_tokens_command(const TokenCommand& command);
+int revoke_token_command(const TokenCommand& command);
+
 struct BenchCommand {
   std::vector<std::string> scenes{"static", "kettle", "tilting_box"};
   std::uint64_t grains = 5000;  ///< of the static scene

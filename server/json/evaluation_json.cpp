@@ -5,14 +5,12 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 #include <variant>
 
-#include <openssl/evp.h>
-
 #include "engine/catalogue.hpp"
 #include "engine/evaluate.hpp"
+#include "server/access/secret.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/key_json.hpp"
 #include "server/json/read_key.hpp"
@@ -198,21 +196,6 @@ engine::Result<Trial, Problems> parse_trial(std::string_view text) {
   if (seed.exists()) trial.seed = seed.seed().value_or(0);
   if (!problems.empty()) return engine::Unexpected{problems.all()};
   return trial;
-}
-
-std::string digest(std::string_view text) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> bytes{};
-  unsigned int size = 0;
-  if (EVP_Digest(text.data(), text.size(), bytes.data(), &size, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("OpenSSL cannot compute SHA-256");
-  }
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string result;
-  for (unsigned int i = 0; i < size; ++i) {
-    result += digits[bytes.at(i) >> 4U];
-    result += digits[bytes.at(i) & 0xFU];
-  }
-  return result;
 }
 
 std::string evaluation_key(const Trial& trial) {

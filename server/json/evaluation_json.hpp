@@ -16,9 +16,6 @@ namespace repose::server {
 std::string print_trial(const engine::Trial& trial);
 engine::Result<engine::Trial, Problems> parse_trial(std::string_view text);
 
-/// SHA-256 in hexadecimal.
-std::string digest(std::string_view text);
-
 /// SHA-256 (hexadecimal) of the engine's version and the canonical question: the evaluation's name
 /// in the store.
 std::string evaluation_key(const engine::Trial& trial);

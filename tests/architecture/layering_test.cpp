@@ -73,7 +73,7 @@ const std::vector<Library> libraries{
     {"sqlite3", {"db/sqlite.cpp", "db/sqlite.hpp"}},
     {"httplib", {"server/api/http_server.cpp", "tests/"}},
     {"nlohmann/", {"server/json/", "tests/"}},
-    {"openssl/", {"server/json/evaluation_json.cpp"}},
+    {"openssl/", {"server/access/secret.cpp"}},
     {"png", {"server/report/image.cpp"}},
     {"CLI/", {"server/cli"}},
     {"catch2/", {"tests/"}},

@@ -1,0 +1,68 @@
+#include <algorithm>
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include "server/access/tokens.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/exit_code.hpp"
+#include "server/cli/text_table.hpp"
+#include "server/jobs/clock.hpp"
+#include "server/json/job_json.hpp"
+#include "server/json/token_json.hpp"
+
+namespace repose::server {
+
+namespace {
+
+std::string day(const std::optional<std::int64_t>& time) {
+  constexpr std::size_t letters = 10;  // 2026-11-23
+  return time ? print_time(*time).substr(0, letters) : "-";
+}
+
+}  // namespace
+
+int create_token_command(const TokenCommand& command) {
+  constexpr std::int64_t microseconds_a_day = 24LL * 3600 * 1'000'000;
+  const auto scope = std::ranges::find(scope_names, command.scope) - scope_names.begin();
+  const std::int64_t now = microseconds_now();
+  std::optional<std::int64_t> expires_at;
+  if (command.days > 0) expires_at = now + command.days * microseconds_a_day;
+  Tokens tokens(Tokens::file_for(command.database));
+  std::cout << tokens.create(command.name, static_cast<Scope>(scope), expires_at, now) << "\n";
+  std::cerr << "repose: keep it: it is not to be had again. Send it as\n"
+               "  Authorization: Bearer rps_...\n";
+  return exit_code::done;
+}
+
+int list_tokens_command(const TokenCommand& command) {
+  const auto tokens = Tokens(Tokens::file_for(command.database)).all();
+  const std::int64_t now = microseconds_now();
+  if (command.form == Form::json) {
+    std::cout << print_token_list(tokens, now) << "\n";
+    return exit_code::done;
+  }
+  TextTable table({"id", "name", "scope", "created", "expires", "revoked", "valid"});
+  for (const Token& token : tokens) {
+    table.row({token.id,
+               token.name,
+               std::string(scope_names.at(static_cast<std::size_t>(token.scope))),
+               day(token.created_at),
+               day(token.expires_at),
+               day(token.revoked_at),
+               scope_at(token, now) == Scope::nothing ? "no" : "yes"});
+  }
+  std::cout << table.str();
+  return exit_code::done;
+}
+
+int revoke_token_command(const TokenCommand& command) {
+  if (Tokens(Tokens::file_for(command.database)).revoke(command.id, microseconds_now())) {
+    return exit_code::done;
+  }
+  std::cerr << "repose: there is no token " << command.id
+            << " that is not revoked; `repose token list` shows them\n";
+  return exit_code::failed;
+}
+
+}  // namespace repose::server
