@@ -2,18 +2,25 @@
 
 #include <chrono>
 #include <exception>
+#include <iostream>
 #include <mutex>
 #include <set>
 #include <utility>
 
+#include "db/event_store.hpp"
 #include "db/store.hpp"
+#include "engine/evaluate.hpp"
+#include "server/access/secret.hpp"
 #include "server/jobs/clock.hpp"
 #include "server/jobs/scheduler.hpp"
 #include "server/jobs/workers.hpp"
 #include "server/json/calibration_json.hpp"
 #include "server/json/evaluation_json.hpp"
+#include "server/json/event_json.hpp"
 #include "server/json/fit_json.hpp"
 #include "server/json/job_json.hpp"
+#include "server/json/measurement_set_json.hpp"
+#include "server/measurements.hpp"
 #include "server/missing_effect.hpp"
 
 namespace repose::server {
@@ -81,6 +88,8 @@ struct Service::State {
   db::Store store;
   WorkerOptions worker_options;
   std::mutex mutex;
+  std::optional<std::chrono::steady_clock::time_point> probed;  ///< when ready() looked last
+  bool writable = false;                                        ///< as it found then
   std::set<std::int64_t> cancelled;      ///< running ones that a user has cancelled
   std::unique_ptr<Scheduler> scheduler;  // last: its thread uses all of the above
 };
@@ -179,11 +188,15 @@ Answer<Calibration> read_study(std::string_view study) {
 }  // namespace
 
 Answer<std::string> Service::submit(std::string_view study) {
-  const auto calibration = read_study(study);
+  const auto submission = resolve_submission(state_->store, study);
+  if (!submission) return Unexpected{submission.error()};
+  const auto calibration = read_study(submission->study);
   if (!calibration) return Unexpected{calibration.error()};
   const std::string request = print_calibration(*calibration);
-  const std::int64_t id = state_->store.add_calibration(
-      calibration->name, request, digest(request), microseconds_now());
+  const std::int64_t id =
+      db::MeasurementStore(state_->store)
+          .add_calibration(
+              calibration->name, request, digest(request), submission->source, microseconds_now());
   if (state_->scheduler) state_->scheduler->submit(id);
   return this->calibration(id);
 }
@@ -280,6 +293,84 @@ std::vector<engine::Evaluation> Service::evaluate(const engine::Trial& trial, in
   for (std::size_t i = 0; i < trials.size(); ++i) trials[i].seed = trial.seed + i;
   Workers workers(state_->store, state_->worker_options);
   return workers.run(trials, {}, {});
+}
+
+Answer<std::string> Service::put_measurement_set(const std::string& name,
+                                                 std::string_view content,
+                                                 const std::optional<std::string>& table_of) {
+  return server::put_measurement_set(state_->store, name, content, table_of);
+}
+
+Answer<std::string> Service::measurement_set(const std::string& name,
+                                             const std::optional<std::int64_t>& version,
+                                             bool as_table) const {
+  return server::measurement_set(state_->store, name, version, as_table);
+}
+
+std::string Service::measurement_sets(int limit, const std::optional<std::string>& after) const {
+  return print_measurement_sets(db::MeasurementStore(state_->store).list(limit, after), limit);
+}
+
+std::string Service::fits(const db::FitFilter& filter, int limit) const {
+  return print_fits(db::MeasurementStore(state_->store).fits(filter, limit), limit);
+}
+
+Answer<std::string> Service::events(const std::optional<std::int64_t>& calibration,
+                                    int limit,
+                                    std::int64_t after) const {
+  if (calibration && !state_->store.calibration(*calibration)) {
+    return Unexpected{not_found(*calibration)};
+  }
+  return print_events(db::EventStore(state_->store).events(calibration, after, limit), limit);
+}
+
+Answer<std::function<std::string()>> Service::event_stream(
+    const std::optional<std::int64_t>& calibration,
+    const std::optional<std::int64_t>& after) const {
+  if (calibration && !state_->store.calibration(*calibration)) {
+    return Unexpected{not_found(*calibration)};
+  }
+  const db::EventStore store(state_->store);
+  const std::int64_t start = after ? *after : store.newest();
+  return std::function([store, calibration, last = start]() mutable -> std::string {
+    constexpr int page = 100;
+    if (store.newest() <= last) return {};
+    const auto events = store.events(calibration, last, page);
+    if (!events.empty()) last = events.back().id;
+    return print_event_stream(events);
+  });
+}
+
+std::optional<db::KeptReply> Service::once(
+    const std::string& key,
+    const std::string& request_digest,
+    const std::function<std::optional<std::string>()>& work) {
+  constexpr std::int64_t day = 24LL * 3600 * 1'000'000;  // microseconds
+  const std::int64_t now = microseconds_now();
+  db::ReplyStore replies(state_->store);
+  replies.forget(now - day);
+  return replies.once(key, request_digest, now, work);
+}
+
+bool Service::ready() {
+  const std::scoped_lock hold(state_->mutex);
+  const auto now = std::chrono::steady_clock::now();
+  if (state_->probed && now - *state_->probed < std::chrono::seconds(1)) return state_->writable;
+  state_->probed = now;
+  try {
+    db::probe(state_->store);
+    state_->writable = true;
+  } catch (const db::Error& error) {
+    std::clog << std::string("repose: not ready: ") + error.what() + "\n";
+    state_->writable = false;
+  }
+  return state_->writable;
+}
+
+ServiceFigures Service::figures() const {
+  return {.engine_version = std::string(engine::version()),
+          .jobs = state_->store.count_by_state(),
+          .store = db::figures(state_->store)};
 }
 
 std::string Service::health() const {

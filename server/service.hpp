@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -13,6 +14,9 @@
 
 #include "calibrator/calibrate.hpp"
 #include "calibrator/diagnosis/diagnosis.hpp"
+#include "db/figures.hpp"
+#include "db/measurement_store.hpp"
+#include "db/reply_store.hpp"
 #include "engine/result.hpp"
 #include "server/json/problem.hpp"
 
@@ -54,6 +58,13 @@ struct DiagnosisEvents {
   std::function<void(std::size_t done, std::size_t all, bool stored)> trial;
 };
 
+/// For those who watch the service.
+struct ServiceFigures {
+  std::string engine_version;
+  std::map<std::string, std::int64_t> jobs;  ///< calibrations by state
+  db::Figures store;
+};
+
 class Service {
  public:
   /// Opens or makes the database, takes its lock, migrates it. Throws db::Error with a clear
@@ -63,7 +74,8 @@ class Service {
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
-  /// Queues a calibration; the answer is its document (id, state, ...).
+  /// Queues a calibration; the answer is its document (id, state, ...). Beside its own members a
+  /// study may have "material" and "measurement_set": {"name", "version"} in place of measurements.
   Answer<std::string> submit(std::string_view study);
 
   /// Runs a calibration here and now (or takes up an unfinished one with the same study); the
@@ -97,8 +109,42 @@ class Service {
   [[nodiscard]] Answer<std::string> extension_study(std::int64_t id,
                                                     const std::string& effect) const;
 
+  // Measurements that users keep, and the fits of a material: see server/measurements.hpp.
+  Answer<std::string> put_measurement_set(const std::string& name,
+                                          std::string_view content,
+                                          const std::optional<std::string>& table_of);
+  [[nodiscard]] Answer<std::string> measurement_set(const std::string& name,
+                                                    const std::optional<std::int64_t>& version,
+                                                    bool as_table) const;
+  /// {"items":[{"name","version","material","created_at"}],"next"}, the newest versions by name
+  [[nodiscard]] std::string measurement_sets(int limit,
+                                             const std::optional<std::string>& after) const;
+  /// {"items":[{"calibration","parameters","not_determined","best","provenance",...}],"next"},
+  /// newest first
+  [[nodiscard]] std::string fits(const db::FitFilter& filter, int limit) const;
+
+  // Events: what happened to a calibration, or to all, in order.
+  /// {"items":[{"id","created_at","kind","data"}],"next"}, oldest first
+  [[nodiscard]] Answer<std::string> events(const std::optional<std::int64_t>& calibration,
+                                           int limit,
+                                           std::int64_t after) const;
+  /// A source of server-sent events from that number on, the latest where none is given; it lives
+  /// as long as the service.
+  [[nodiscard]] Answer<std::function<std::string()>> event_stream(
+      const std::optional<std::int64_t>& calibration,
+      const std::optional<std::int64_t>& after) const;
+
   /// One virtual experiment, `replicates` seeds from `seed` on; stored like any other evaluation.
   std::vector<engine::Evaluation> evaluate(const engine::Trial& trial, int replicates);
+
+  /// Does something once for each key: see db/reply_store.hpp.
+  std::optional<db::KeptReply> once(const std::string& key,
+                                    const std::string& request_digest,
+                                    const std::function<std::optional<std::string>()>& work);
+
+  /// Whether the store can be written: looks at most once a second.
+  bool ready();
+  [[nodiscard]] ServiceFigures figures() const;
 
   /// {"status","database","engine_version","jobs":{state: count}}
   [[nodiscard]] std::string health() const;

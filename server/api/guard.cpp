@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <system_error>
 
 namespace repose::server {
 
 namespace {
 
 constexpr std::size_t most_fields = 64;
+constexpr std::size_t longest_target = 8000;  // bytes; the HTTP library reads 8192
 
 char lower(char letter) {
   return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
@@ -15,14 +18,6 @@ char lower(char letter) {
 
 bool same_name(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, {}, lower, lower);
-}
-
-std::vector<std::string_view> values_of(const RequestHead& head, std::string_view name) {
-  std::vector<std::string_view> values;
-  for (const auto& [field, value] : head.fields) {
-    if (same_name(field, name)) values.push_back(value);
-  }
-  return values;
 }
 
 /// The host of a Host field, without its port.
@@ -39,8 +34,56 @@ bool is_known(std::string_view host, const std::vector<std::string>& names) {
   return std::ranges::any_of(loopback, is_same) || std::ranges::any_of(names, is_same);
 }
 
-bool breaks_line(std::string_view value) {
-  return value.find_first_of(std::string_view("\r\n\0", 3)) != std::string_view::npos;
+/// Control characters: a line break or a null in a field is an attack on whoever reads it next.
+bool has_control(std::string_view text) {
+  return std::ranges::any_of(text, [](char letter) {
+    const auto code = static_cast<unsigned char>(letter);
+    return (code < 0x20 && letter != '\t') || code == 0x7f;
+  });
+}
+
+/// RFC 9110, 5.6.2: what methods and names of fields are made of.
+bool is_token(std::string_view text) {
+  static constexpr std::string_view letters =
+      "!#$%&'*+-.^_`|~0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+  return !text.empty() && text.find_first_not_of(letters) == std::string_view::npos;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+  text.remove_prefix(begin);
+  return text.substr(0, text.find_last_not_of(" \t") + 1);
+}
+
+/// Takes the first line off a text of lines that each end in CR LF.
+std::string_view next_line(std::string_view& lines) {
+  const std::size_t end = std::min(lines.find("\r\n"), lines.size());
+  const std::string_view line = lines.substr(0, end);
+  lines.remove_prefix(std::min(end + 2, lines.size()));
+  return line;
+}
+
+std::optional<HeadRefusal> read_first_line(std::string_view line, RequestHead& head) {
+  const std::size_t first = line.find(' '), last = line.rfind(' ');
+  if (first == std::string_view::npos || first == last) {
+    return HeadRefusal{400, "A request begins with METHOD ADDRESS HTTP/1.1."};
+  }
+  const std::string_view method = line.substr(0, first), version = line.substr(last + 1);
+  const std::string_view target = line.substr(first + 1, last - first - 1);
+  if (!is_token(method)) return HeadRefusal{400, "A method is one word."};
+  if (version != "HTTP/1.1" && version != "HTTP/1.0") {
+    return HeadRefusal{400, "HTTP/1.1 and HTTP/1.0 are spoken here."};
+  }
+  if (target.size() > longest_target) {
+    return HeadRefusal{414, "An address has at most " + std::to_string(longest_target) + " bytes."};
+  }
+  if (!target.starts_with('/') || target.find_first_of(" \t") != std::string_view::npos) {
+    return HeadRefusal{400, "An address begins with / and holds no blank."};
+  }
+  head.method = method;
+  head.target = target;
+  head.keeps_alive = version == "HTTP/1.1";
+  return std::nullopt;
 }
 
 bool is_whole(std::string_view text) {
@@ -60,6 +103,13 @@ std::optional<HeadRefusal> refuse_body(const RequestHead& head) {
   if (lengths.size() > 1 || (lengths.size() == 1 && !is_whole(lengths[0]))) {
     return HeadRefusal{400, "Content-Length is one whole number."};
   }
+  if (!lengths.empty() && lengths[0].find_first_not_of('0') != lengths[0].npos) {
+    std::size_t length = 0;
+    std::from_chars(lengths[0].data(), lengths[0].data() + lengths[0].size(), length);
+    if (length > largest_body) {
+      return HeadRefusal{413, "At most " + std::to_string(largest_body) + " bytes are read."};
+    }
+  }
   const bool takes_body = head.method == "POST" || head.method == "PUT" || head.method == "PATCH";
   if (takes_body && lengths.empty()) {
     return HeadRefusal{411, "Send the body with a Content-Length."};
@@ -71,19 +121,54 @@ std::optional<HeadRefusal> refuse_body(const RequestHead& head) {
   return std::nullopt;
 }
 
+bool asks_for_ranges(const RequestHead& head) {
+  return std::ranges::any_of(values_of(head, "Range"), [](std::string_view value) {
+    return value.find(',') != std::string_view::npos;
+  });
+}
+
 }  // namespace
+
+std::vector<std::string_view> values_of(const RequestHead& head, std::string_view name) {
+  std::vector<std::string_view> values;
+  for (const auto& [field, value] : head.fields) {
+    if (same_name(field, name)) values.push_back(value);
+  }
+  return values;
+}
+
+engine::Result<RequestHead, HeadRefusal> read_head(std::string_view lines) {
+  RequestHead head;
+  if (auto refusal = read_first_line(next_line(lines), head)) {
+    return engine::Unexpected{std::move(*refusal)};
+  }
+  while (!lines.empty()) {
+    const std::string_view line = next_line(lines);
+    const std::size_t colon = std::min(line.find(':'), line.size());
+    const std::string_view name = line.substr(0, colon);
+    if (colon == line.size() || !is_token(name)) {
+      return engine::Unexpected{HeadRefusal{400, "A header field is NAME: VALUE on one line."}};
+    }
+    head.fields.emplace_back(name, trimmed(line.substr(colon + 1)));
+  }
+  if (std::ranges::any_of(values_of(head, "Connection"),
+                          [](std::string_view value) { return same_name(value, "close"); })) {
+    head.keeps_alive = false;
+  }
+  return head;
+}
 
 std::optional<HeadRefusal> refuse(const RequestHead& head, const std::vector<std::string>& names) {
   if (head.fields.size() > most_fields) {
     return HeadRefusal{431, "At most " + std::to_string(most_fields) + " header fields are read."};
   }
-  for (const auto& [name, value] : head.fields) {
-    if (breaks_line(name) || breaks_line(value)) {
-      return HeadRefusal{400, "A header field holds a line break or a null."};
-    }
+  if (has_control(head.target) || std::ranges::any_of(head.fields, [](const auto& field) {
+        return has_control(field.first) || has_control(field.second);
+      })) {
+    return HeadRefusal{400, "A header field holds a line break or another control character."};
   }
   if (auto refusal = refuse_body(head)) return refusal;
-  if (head.ranges > 1) return HeadRefusal{416, "One range at a time."};
+  if (asks_for_ranges(head)) return HeadRefusal{416, "One range at a time."};
   const auto hosts = values_of(head, "Host");
   if (hosts.size() != 1) return HeadRefusal{400, "A request names its host once."};
   if (!is_known(hosts[0], names)) {

@@ -12,6 +12,14 @@ Reply list_evaluations(Service& service, const Request& request);
 Reply cancel_calibration(Service& service, const Request& request);
 Reply list_best_fits(Service& service, const Request& request);
 
+Reply follow_calibration(Service& service, const Request& request);
+Reply follow_all(Service& service, const Request& request);
+
+Reply list_measurement_sets(Service& service, const Request& request);
+Reply get_measurement_set(Service& service, const Request& request);
+Reply put_measurement_set(Service& service, const Request& request);
+Reply list_fits(Service& service, const Request& request);
+
 Reply get_catalogue(Service& service, const Request& request);
 Reply get_openapi(Service& service, const Request& request);
 
@@ -19,6 +27,8 @@ Reply list_materials(Service& service, const Request& request);
 Reply get_material(Service& service, const Request& request);
 
 Reply get_health(Service& service, const Request& request);
+Reply get_readiness(Service& service, const Request& request);
+Reply get_metrics(Service& service, const Request& request);
 Reply get_life(Service& service, const Request& request);
 
 }  // namespace repose::server::handlers

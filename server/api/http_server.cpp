@@ -1,73 +1,45 @@
 #include "server/api/http_server.hpp"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <iostream>
 #include <stdexcept>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include <httplib.h>
 
+#include "server/api/api.hpp"
 #include "server/api/guard.hpp"
 #include "server/api/problem.hpp"
+#include "server/api/reply_text.hpp"
 
 namespace repose::server {
 
 namespace {
 
-constexpr std::size_t threads = 32;       // one request each; a slow client holds one
-constexpr std::size_t keep_alive = 1000;  // requests a connection; the library's 5 cost a thousand
-                                          // fold in requests per second
-constexpr std::time_t read_seconds = 5;   // without a byte
-constexpr std::time_t write_seconds = 10;
-
-RequestHead head_of(const httplib::Request& request) {
-  // The library puts its own notes on both ends among the fields.
-  static constexpr std::array<std::string_view, 4> notes{
-      "REMOTE_ADDR", "REMOTE_PORT", "LOCAL_ADDR", "LOCAL_PORT"};
-  RequestHead head{request.method, {}, request.ranges.size()};
-  for (const auto& [name, value] : request.headers) {
-    if (std::ranges::find(notes, std::string_view(name)) == notes.end()) {
-      head.fields.emplace_back(name, value);
-    }
-  }
-  return head;
+std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  });
+  return text;
 }
 
 Request request_of(const httplib::Request& request) {
-  return {.method = request.method,
-          .path = request.path,
-          .query = request.params,
-          .content_type = request.get_header_value("Content-Type"),
-          .body = request.body};
+  Request result{.method = request.method,
+                 .path = request.path,
+                 .query = request.params,
+                 .content_type = request.get_header_value("Content-Type"),
+                 .body = request.body};
+  for (const auto& [name, value] : request.headers) result.fields[lower_case(name)] = value;
+  return result;
 }
 
 void send(const Reply& reply, httplib::Response& response) {
   response.status = reply.status;
   for (const auto& [name, value] : reply.headers) response.set_header(name, value);
   response.set_content(reply.body, reply.content_type);
-}
-
-/// Answers and closes the connection. The library closes it only where writing fails: so the body
-/// is written, and then said to have failed. What is left of the request is thus never read as the
-/// next one.
-void send_and_close(const Reply& reply, httplib::Request& request, httplib::Response& response) {
-  response.status = reply.status;
-  response.set_header("Connection", "close");
-  response.set_content_provider(
-      reply.body.size(),
-      reply.content_type,
-      [body = reply.body](std::size_t, std::size_t, httplib::DataSink& sink) {
-        sink.write(body.data(), body.size());
-        return false;
-      });
-  // An answer to HEAD has no body, so nothing would fail.
-  if (request.method == "HEAD") request.method = "GET";
 }
 
 /// Without the library's SO_REUSEPORT, with which two servers share a port unawares.
@@ -88,55 +60,76 @@ void log_exception(const httplib::Request& request, const std::exception_ptr& th
   std::clog << "http: " + request.method + " " + request.path + " failed: " + what + "\n";
 }
 
-/// Gives the port back also where nobody ever listened on it.
-class Listener : public httplib::Server {
+/// A request that has come whole, and room for its answer: the library reads and writes memory.
+class MemoryStream final : public httplib::Stream {
  public:
-  Listener() = default;
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-  ~Listener() override {
+  explicit MemoryStream(std::string_view request) : request_(request) {}
+  [[nodiscard]] bool is_readable() const override { return !request_.empty(); }
+  [[nodiscard]] bool is_writable() const override { return true; }
+  ssize_t read(char* to, std::size_t size) override {
+    const std::size_t count = request_.copy(to, size);
+    request_.remove_prefix(count);
+    return static_cast<ssize_t>(count);
+  }
+  ssize_t write(const char* from, std::size_t size) override {
+    answer_.append(from, size);
+    return static_cast<ssize_t>(size);
+  }
+  void get_remote_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
+  void get_local_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
+  [[nodiscard]] socket_t socket() const override { return INVALID_SOCKET; }
+  [[nodiscard]] std::string take() { return std::move(answer_); }
+
+ private:
+  std::string_view request_;
+  std::string answer_;
+};
+
+/// The reply of the request that this thread works on, where it is a stream: the library's handlers
+/// have no other way to hand one on.
+thread_local Reply stream_reply;  // NOLINT: each thread has its own
+
+/// The library behind our own sockets: it binds, parses, decodes and prints.
+class Library : public httplib::Server {
+ public:
+  Library() = default;
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+  /// Gives the port back.
+  ~Library() override {
     const socket_t socket = svr_sock_.exchange(INVALID_SOCKET);
     if (socket != INVALID_SOCKET) ::close(socket);
+  }
+
+  [[nodiscard]] int listener() const { return svr_sock_; }
+
+  Output answer(const std::string& request, bool keeps_alive) {
+    MemoryStream stream(request);
+    stream_reply = {};
+    bool closes = false;
+    const bool answered = process_request(stream, !keeps_alive, closes, nullptr);
+    if (stream_reply.stream) {
+      return {print_stream_head(stream_reply), false, std::move(stream_reply.stream)};
+    }
+    return {stream.take(), answered && !closes};
   }
 };
 
 }  // namespace
 
 struct HttpServer::State {
-  Listener http;
+  Library http;
   Responder responder;
-  std::vector<std::string> names;
   int port = 0;
-  std::atomic<bool> entered = false;
-  std::atomic<bool> stopped = false;
-  std::atomic<bool> finished = false;
+  std::unique_ptr<Transport> transport;
 
-  void set_limits() {
-    http.new_task_queue = [] { return new httplib::ThreadPool(threads); };
+  void set_handlers() {
+    using Handled = httplib::Server::HandlerResponse;
     http.set_payload_max_length(largest_body);
-    http.set_tcp_nodelay(true);
-    http.set_keep_alive_max_count(keep_alive);
-    http.set_read_timeout(read_seconds);
-    http.set_write_timeout(write_seconds);
     http.set_socket_options(set_socket_options);
     http.set_default_headers({{"X-Content-Type-Options", "nosniff"},
                               {"Referrer-Policy", "no-referrer"},
                               {"Cache-Control", "no-store"}});
-  }
-
-  void set_handlers() {
-    using Handled = httplib::Server::HandlerResponse;
-    http.set_pre_routing_handler([this](const httplib::Request& given,
-                                        httplib::Response& response) {
-      auto refusal = refuse(head_of(given), names);
-      // The library's own variable, handed on as a constant. Answers are whole: a range would be
-      // cut out of them, problems included.
-      auto& request = const_cast<httplib::Request&>(given);
-      request.ranges.clear();
-      if (!refusal) return Handled::Unhandled;
-      send_and_close(problem_reply(refusal->status, std::move(refusal->detail)), request, response);
-      return Handled::Handled;
-    });
     http.set_exception_handler([](const httplib::Request& request,
                                   httplib::Response& response,
                                   const std::exception_ptr& thrown) {
@@ -145,18 +138,38 @@ struct HttpServer::State {
     });
     const httplib::Server::HandlerWithResponse explain = [](const httplib::Request&,
                                                             httplib::Response& response) {
-      if (!response.body.empty() || response.content_provider_) return Handled::Unhandled;
+      if (!response.body.empty()) return Handled::Unhandled;
       send(problem_reply(response.status, "The request was refused before it was read."), response);
       return Handled::Handled;
     };
     http.set_error_handler(explain);
     const httplib::Server::Handler answer = [this](const httplib::Request& request,
                                                    httplib::Response& response) {
-      send(responder(request_of(request)), response);
+      Reply reply = responder(request_of(request));
+      send(reply, response);
+      if (reply.stream && request.method != "HEAD") stream_reply = std::move(reply);
     };
     // One pattern for all: paths are told apart by our own table.
     http.Get(".*", answer).Options(".*", answer);
     http.Post(".*", answer).Put(".*", answer).Patch(".*", answer).Delete(".*", answer);
+  }
+
+  void bind(const HttpOptions& options) {
+    errno = 0;
+    if (options.port == 0) {
+      port = http.bind_to_any_port(options.host);
+    } else if (http.bind_to_port(options.host, options.port)) {
+      port = options.port;
+    } else {
+      port = -1;
+    }
+    if (port > 0) return;
+    const std::error_code error = errno == 0
+                                      ? std::make_error_code(std::errc::address_not_available)
+                                      : std::error_code(errno, std::system_category());
+    throw std::system_error(error,
+                            "cannot listen on " + options.host + ":" +
+                                std::to_string(options.port) + " (choose with --host, --port)");
   }
 };
 
@@ -165,50 +178,36 @@ HttpServer::HttpServer(Responder responder, const HttpOptions& options)
   std::signal(SIGPIPE, SIG_IGN);  // a client that left is no reason to end
   State& state = *state_;
   state.responder = std::move(responder);
-  state.names = options.names;
-  const bool is_v6 = options.host.find(':') != std::string::npos;
-  state.names.push_back(is_v6 ? "[" + options.host + "]" : options.host);
-  state.set_limits();
   state.set_handlers();
-  errno = 0;
-  if (options.port == 0) {
-    state.port = state.http.bind_to_any_port(options.host);
-  } else if (state.http.bind_to_port(options.host, options.port)) {
-    state.port = options.port;
-  } else {
-    state.port = -1;
-  }
-  if (state.port <= 0) {
-    const std::error_code error = errno == 0
-                                      ? std::make_error_code(std::errc::address_not_available)
-                                      : std::error_code(errno, std::system_category());
-    throw std::system_error(error,
-                            "cannot listen on " + options.host + ":" +
-                                std::to_string(options.port) + " (choose with --host, --port)");
-  }
+  state.bind(options);
+  std::vector<std::string> names = options.names;
+  const bool is_v6 = options.host.find(':') != std::string::npos;
+  names.push_back(is_v6 ? "[" + options.host + "]" : options.host);
+  state.transport = std::make_unique<Transport>(
+      state.http.listener(),
+      std::move(names),
+      options.limits,
+      [&state](const std::string& request, bool keeps_alive) {
+        return state.http.answer(request, keeps_alive);
+      },
+      [](int status, const std::string& detail) {
+        return print_last_reply(problem_reply(status, detail));
+      });
 }
 
-HttpServer::HttpServer(Service& service, const HttpOptions& options)
-    : HttpServer([&service](Request request) { return respond(service, std::move(request)); },
-                 options) {}
+HttpServer::HttpServer(Api& api, const HttpOptions& options)
+    : HttpServer([&api](Request request) { return api.respond(std::move(request)); }, options) {
+  api.watch([transport = state_->transport.get()] { return transport->figures(); });
+}
 
 HttpServer::~HttpServer() = default;
 
 int HttpServer::port() const { return state_->port; }
 
-void HttpServer::run() {
-  state_->entered = true;
-  if (!state_->stopped) state_->http.listen_after_bind();
-  state_->finished = true;
-}
+void HttpServer::run() { state_->transport->run(); }
 
-void HttpServer::stop() {
-  state_->stopped = true;
-  // The library forgets a stop that comes before it listens.
-  while (state_->entered && !state_->finished && !state_->http.is_running()) {
-    std::this_thread::yield();
-  }
-  state_->http.stop();
-}
+void HttpServer::stop() { state_->transport->stop(); }
+
+TransportFigures HttpServer::figures() const { return state_->transport->figures(); }
 
 }  // namespace repose::server

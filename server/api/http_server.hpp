@@ -1,5 +1,5 @@
 /// HttpServer: the API on a socket. Loopback unless told otherwise; for a network, put a proxy in
-/// front that limits connections, headers and times.
+/// front that encrypts and limits each client.
 #pragma once
 
 #include <functional>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/api/route.hpp"
+#include "server/api/transport.hpp"
 
 namespace repose::server {
 
@@ -16,6 +17,7 @@ struct HttpOptions {
   int port = 0;  ///< 0: any that is free
   std::vector<std::string> names =
       {};  ///< hosts to answer for, beside `host` and the loopback's names
+  TransportLimits limits = {};
 };
 
 class HttpServer {
@@ -23,7 +25,7 @@ class HttpServer {
   using Responder = std::function<Reply(Request)>;
 
   /// Binds the port. Throws std::runtime_error that names it where it is taken.
-  HttpServer(Service& service, const HttpOptions& options);
+  HttpServer(Api& api, const HttpOptions& options);
   HttpServer(Responder responder, const HttpOptions& options);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
@@ -31,10 +33,12 @@ class HttpServer {
 
   [[nodiscard]] int port() const;
 
-  /// Answers requests until stop(), then finishes those in work.
+  /// Answers requests until stop(), then finishes those in work and ends the streams.
   void run();
   /// From any thread, also before run().
   void stop();
+
+  [[nodiscard]] TransportFigures figures() const;
 
  private:
   struct State;

@@ -1,4 +1,4 @@
-/// Query: the fields of a request's query, each read once and checked.
+/// Query: the fields of a request's query (and of its head), each read once and checked.
 #pragma once
 
 #include <cstdint>
@@ -25,12 +25,20 @@ class Query {
                                     std::int64_t least,
                                     std::int64_t most = std::numeric_limits<std::int64_t>::max());
   std::optional<std::string> text(std::string_view name);
+  /// true or false; false where it is not given.
+  bool truth(std::string_view name);
+  /// A whole number in a field of the head, by its name in lower case.
+  std::optional<std::int64_t> whole_field(const std::string& name, std::int64_t least);
 
   [[nodiscard]] const Problems& problems() const { return problems_; }
   [[nodiscard]] Reply refusal() const;
 
  private:
   std::optional<std::string> once(std::string_view name);
+  std::optional<std::int64_t> whole_in(const std::string& text,
+                                       std::string_view name,
+                                       std::int64_t least,
+                                       std::int64_t most);
   void complain(std::string_view name,
                 const std::string& message,
                 const std::string& found,

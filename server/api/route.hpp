@@ -2,15 +2,21 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "engine/result.hpp"
+#include "server/access/tokens.hpp"
+
 namespace repose::server {
 
+class Api;
 class Service;
 
 /// A request as handlers see it: checked for form, decoded, without a trace of the transport.
@@ -22,6 +28,16 @@ struct Request {
   std::string body;
   std::int64_t id = 0;    ///< of the path, where the route's pattern has {id}
   std::string name = {};  ///< of the path, where the route's pattern has {name}
+  std::map<std::string, std::string> fields = {};  ///< of the head, their names in lower case
+
+  std::string user = {};     ///< id of the token; empty where none is needed
+  const Api* api = nullptr;  ///< that answers it; null where a handler is called by itself
+
+  /// A field of the head, by its name in lower case; empty where it is not there.
+  [[nodiscard]] std::string field(const std::string& lower_case_name) const {
+    const auto found = fields.find(lower_case_name);
+    return found == fields.end() ? std::string() : found->second;
+  }
 };
 
 struct Reply {
@@ -29,13 +45,15 @@ struct Reply {
   std::string body;
   std::string content_type = "application/json";
   std::vector<std::pair<std::string, std::string>> headers = {};
+  /// Of an answer that does not end: the text that has come up since the last call.
+  std::function<std::string()> stream = {};
 };
 
 /// A field of the query.
 struct QueryField {
   std::string_view name;
   std::string_view meaning;
-  bool whole = true;       ///< a whole number; else any text
+  bool whole = true;       ///< a whole number; else a text
   std::int64_t least = 1;  ///< of a whole number
 };
 
@@ -51,12 +69,24 @@ struct Route {
   std::string_view response;  ///< name of its schema; empty: any object
   std::span<const QueryField> query;
   Handler handler;
+  std::string_view media = "application/json";  ///< form of the answer
+  std::optional<Scope> scope = {};              ///< else read to read, submit to change
+  std::string_view also = {};                   ///< another form that body or answer may have
 };
+
+/// What a token must give for a request of that route.
+Scope needed_scope(const Route& route);
 
 /// The table.
 std::span<const Route> routes();
 
-/// Answers a request from the table: 404 and 405 included.
+/// The route of a request, whose id and name are set from its path; else the problem, 404 or 405.
+engine::Result<const Route*, Reply> find_route(Request& request);
+
+/// Checks what the route demands of every request, and calls its handler.
+Reply run_route(const Route& route, Service& service, const Request& request);
+
+/// Both: answers a request from the table.
 Reply respond(Service& service, Request request);
 
 }  // namespace repose::server

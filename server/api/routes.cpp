@@ -3,6 +3,7 @@
 #include <charconv>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "server/api/handlers.hpp"
 #include "server/api/problem.hpp"
@@ -21,13 +22,34 @@ constexpr std::array<QueryField, 2> evaluation_fields{{
     {"limit", "how many items, 1 to 200 (50 where it is not given)"},
     {"after", "only items after this one: the answer's `next`", true, 0},
 }};
+constexpr std::array<QueryField, 2> event_fields{{
+    {"after", "only events after this one (also as Last-Event-ID)", true, 0},
+    {"limit", "of a page, how many items, 1 to 200 (50 where it is not given)"},
+}};
+constexpr std::array<QueryField, 5> fit_fields{{
+    {"material", "only of that material", false},
+    {"name", "only of the study of that name", false},
+    {"latest", "true: only the newest one", false},
+    {"limit", "how many items, 1 to 200 (50 where it is not given)"},
+    {"before", "only items older than this one: the answer's `next`"},
+}};
+constexpr std::array<QueryField, 2> set_list_fields{{
+    {"limit", "how many items, 1 to 200 (50 where it is not given)"},
+    {"after", "only names after this one: the answer's `next`", false},
+}};
+constexpr std::array<QueryField, 1> version_field{{{"version", "which; else the newest"}}};
+constexpr std::array<QueryField, 1> table_fields{
+    {{"material", "what was measured, where a table is sent", false}}};
 constexpr std::array<QueryField, 1> best_fit_fields{
     {{"name", "only of the study of that name", false}}};
 
+constexpr std::string_view json = "application/json", stream = "text/event-stream",
+                           table_form = "text/csv";
+
 // clang-format off
-constexpr std::array<Route, 12> table{{
+constexpr std::array<Route, 20> table{{
     {"POST", "/v1/calibrations", "submitCalibration", "Queue a calibration.",
-     "calibration", 202, "calibration_document", {}, handlers::submit_calibration},
+     "submission", 202, "calibration_document", {}, handlers::submit_calibration},
     {"GET", "/v1/calibrations", "listCalibrations", "List calibrations, newest first.",
      "", 200, "calibration_list", list_fields, handlers::list_calibrations},
     {"GET", "/v1/calibrations/{id}", "getCalibration", "Get a calibration: study, state, progress, fit.",
@@ -36,6 +58,18 @@ constexpr std::array<Route, 12> table{{
      "", 200, "evaluation_list", evaluation_fields, handlers::list_evaluations},
     {"DELETE", "/v1/calibrations/{id}", "cancelCalibration", "Cancel a calibration that is not finished.",
      "", 202, "calibration_document", {}, handlers::cancel_calibration},
+    {"GET", "/v1/calibrations/{id}/events", "followCalibration", "Follow a calibration: a stream of events, or a page of them.",
+     "", 200, "event_list", event_fields, handlers::follow_calibration, json, {}, stream},
+    {"GET", "/v1/events", "followAll", "Follow everything: a stream of events, or a page of them.",
+     "", 200, "event_list", event_fields, handlers::follow_all, json, {}, stream},
+    {"GET", "/v1/measurement-sets", "listMeasurementSets", "List the sets of measurements that are kept.",
+     "", 200, "measurement_set_list", set_list_fields, handlers::list_measurement_sets},
+    {"GET", "/v1/measurement-sets/{name}", "getMeasurementSet", "Get a set of measurements, as JSON or CSV.",
+     "", 200, "measurement_set", version_field, handlers::get_measurement_set, json, {}, table_form},
+    {"PUT", "/v1/measurement-sets/{name}", "putMeasurementSet", "Keep a new version of a set, sent as JSON or CSV.",
+     "measurement_set_content", 200, "measurement_set", table_fields, handlers::put_measurement_set, json, {}, table_form},
+    {"GET", "/v1/fits", "listFits", "Get fits with their intervals, what they leave open, and where they are from.",
+     "", 200, "fit_list", fit_fields, handlers::list_fits},
     {"GET", "/v1/best-fits", "listBestFits", "Get the best fit of every study, or of one.",
      "", 200, "best_fit_list", best_fit_fields, handlers::list_best_fits},
     {"GET", "/v1/catalogue", "getCatalogue", "Get effects, experiments, material properties and units.",
@@ -48,8 +82,12 @@ constexpr std::array<Route, 12> table{{
      "", 200, "", {}, handlers::get_openapi},
     {"GET", "/healthz", "getHealth", "See whether the service can work.",
      "", 200, "health", {}, handlers::get_health},
+    {"GET", "/readyz", "getReadiness", "See whether the service can take on work.",
+     "", 200, "readiness", {}, handlers::get_readiness, json, Scope::nothing},
+    {"GET", "/metrics", "getMetrics", "Get figures for Prometheus.",
+     "", 200, "", {}, handlers::get_metrics, "text/plain"},
     {"GET", "/livez", "getLife", "See whether the process answers.",
-     "", 200, "life", {}, handlers::get_life},
+     "", 200, "life", {}, handlers::get_life, json, Scope::nothing},
 }};
 // clang-format on
 
@@ -96,47 +134,63 @@ std::optional<PathParts> match(std::string_view pattern, std::string_view path) 
   return parts;
 }
 
-bool is_json(std::string_view content_type) {
+/// A media type without its parameters, in lower case.
+std::string media_type(std::string_view content_type) {
   std::string type(content_type.substr(0, content_type.find(';')));
   while (!type.empty() && type.back() == ' ') type.pop_back();
   std::ranges::transform(type, type.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
   });
-  return type == "application/json";
-}
-
-Reply run(const Route& route, Service& service, const Request& request) {
-  if (!route.request.empty() && !is_json(request.content_type)) {
-    return problem_reply(415, "Send the document as Content-Type: application/json.");
-  }
-  Problems problems = unknown_fields(request, route);
-  if (!problems.empty()) return problem_reply(400, "The query has problems.", std::move(problems));
-  return route.handler(service, request);
+  return type;
 }
 
 }  // namespace
 
 std::span<const Route> routes() { return table; }
 
-Reply respond(Service& service, Request request) {
+Scope needed_scope(const Route& route) {
+  if (route.scope) return *route.scope;
+  return route.method == "GET" ? Scope::read : Scope::submit;
+}
+
+engine::Result<const Route*, Reply> find_route(Request& request) {
   const std::string_view asked = request.method;
   const std::string_view method = asked == "HEAD" ? "GET" : asked;
   std::string allowed;
   for (const Route& route : table) {
-    const auto parts = match(route.pattern, request.path);
+    auto parts = match(route.pattern, request.path);
     if (!parts) continue;
     if (route.method == method) {
       request.id = parts->id;
-      request.name = parts->name;
-      return run(route, service, request);
+      request.name = std::move(parts->name);
+      return &route;
     }
     allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
     if (route.method == "GET") allowed += ", HEAD";
   }
-  if (allowed.empty()) return problem_reply(404, "There is nothing at this address.");
+  if (allowed.empty()) {
+    return engine::Unexpected{problem_reply(404, "There is nothing at this address.")};
+  }
   Reply reply = problem_reply(405, "Allowed here: " + allowed + ".");
   reply.headers.emplace_back("Allow", allowed);
-  return reply;
+  return engine::Unexpected{std::move(reply)};
+}
+
+Reply run_route(const Route& route, Service& service, const Request& request) {
+  const std::string type = media_type(request.content_type);
+  if (!route.request.empty() && type != json && (route.also.empty() || type != route.also)) {
+    return problem_reply(415,
+                         "Send the document as Content-Type: application/json" +
+                             (route.also.empty() ? "." : " or " + std::string(route.also) + "."));
+  }
+  Problems problems = unknown_fields(request, route);
+  if (!problems.empty()) return problem_reply(400, "The query has problems.", std::move(problems));
+  return route.handler(service, request);
+}
+
+Reply respond(Service& service, Request request) {
+  const auto route = find_route(request);
+  return route ? run_route(**route, service, request) : route.error();
 }
 
 }  // namespace repose::server

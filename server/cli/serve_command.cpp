@@ -1,6 +1,9 @@
 #include <iostream>
 #include <stop_token>
+#include <string_view>
 
+#include "server/access/tokens.hpp"
+#include "server/api/api.hpp"
 #include "server/api/http_server.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/exit_code.hpp"
@@ -10,16 +13,35 @@
 
 namespace repose::server {
 
+namespace {
+
+bool is_loopback(std::string_view host) {
+  return host == "localhost" || host == "::1" || host.starts_with("127.");
+}
+
+}  // namespace
+
 int serve_command(const ServeCommand& command) {
   ServiceOptions options;
   options.database = command.database;
   options.workers = command.workers;
   options.program = own_program();
   options.run_jobs = true;
+  Tokens tokens(Tokens::file_for(command.database));
+  const bool open = tokens.all().empty();
+  if (open && !is_loopback(command.host)) {
+    std::cerr
+        << "repose: " << command.host
+        << " can be reached by others, and there are no tokens yet;\n"
+           "  make one with `repose token create NAME --scope submit`, or serve on 127.0.0.1\n";
+    return exit_code::misused;
+  }
   const Interrupt interrupt;
   Service service(options);
-  HttpServer server(service, {.host = command.host, .port = command.port, .names = command.names});
+  Api api(service, &tokens);
+  HttpServer server(api, {.host = command.host, .port = command.port, .names = command.names});
   const std::stop_callback stop(interrupt.token(), [&server] { server.stop(); });
+  if (open) std::cerr << "repose: there are no tokens: every user of this machine may use it\n";
   std::cout << "http://" << command.host << ":" << server.port() << "/" << std::endl;
   server.run();
   std::cerr << "repose: stopped; unfinished calibrations go on at the next start\n";

@@ -1,5 +1,6 @@
 #include "server/json/openapi.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "server/json/catalogue_schema.hpp"
@@ -11,25 +12,24 @@ namespace {
 
 constexpr std::string_view suffix = ".schema.json";
 constexpr std::string_view components = "#/components/schemas/";
-constexpr std::string_view definitions = "#/definitions/";
+constexpr std::string_view definitions = "/definitions/";
 constexpr std::string_view answers = "answers";  // whose definitions are components themselves
 
 Json reference(std::string_view component) {
   return {{"$ref", std::string(components) + std::string(component)}};
 }
 
-/// Where a reference of one of our schemas leads within the one document.
+/// Where a reference of one of our schemas, "FILE#/PLACE", leads within the one document.
 std::string moved(std::string_view target, std::string_view component) {
-  if (target.ends_with(suffix)) {
-    target.remove_suffix(suffix.size());
-    return std::string(components) + std::string(target);
+  const std::size_t hash = std::min(target.find('#'), target.size());
+  const std::string_view file = target.substr(0, hash);
+  std::string_view place = target.substr(std::min(hash + 1, target.size()));
+  if (!file.empty()) component = file.substr(0, file.size() - suffix.size());
+  if (component == answers && place.starts_with(definitions)) {
+    place.remove_prefix(definitions.size());
+    return std::string(components) + std::string(place);
   }
-  if (component == answers && target.starts_with(definitions)) {
-    target.remove_prefix(definitions.size());
-    return std::string(components) + std::string(target);
-  }
-  target.remove_prefix(1);  // '#'
-  return std::string(components) + std::string(component) + std::string(target);
+  return std::string(components) + std::string(component) + std::string(place);
 }
 
 /// A schema as a component: without the identity of a file, its references moved.
@@ -74,6 +74,11 @@ Json content(const char* type, Json schema) {
   return {{"content", {{type, {{"schema", std::move(schema)}}}}}};
 }
 
+/// A body that may also have another form, which is a text.
+void add_form(Json& body, std::string_view also) {
+  if (!also.empty()) body["content"][std::string(also)] = {{"schema", {{"type", "string"}}}};
+}
+
 Json print_parameters(const Route& route) {
   const auto whole = [](std::int64_t least) {
     return Json{{"type", "integer"}, {"minimum", least}};
@@ -105,10 +110,14 @@ Json print_operation(const Route& route) {
   if (!route.request.empty()) {
     operation["requestBody"] = content("application/json", reference(route.request));
     operation["requestBody"]["required"] = true;
+    add_form(operation["requestBody"], route.also);
   }
-  Json success =
-      content("application/json",
-              route.response.empty() ? Json{{"type", "object"}} : reference(route.response));
+  const bool is_json = route.media == "application/json";
+  Json success = content(std::string(route.media).c_str(),
+                         !is_json                 ? Json{{"type", "string"}}
+                         : route.response.empty() ? Json{{"type", "object"}}
+                                                  : reference(route.response));
+  add_form(success, route.also);
   success["description"] = "The answer.";
   if (route.success == 202) success["description"] = "Taken on; the answer says how it stands.";
   Json problem = content("application/problem+json", reference("problem"));

@@ -1,16 +1,16 @@
-#include <chrono>
-#include <cstdlib>
+#include "tests/support/api.hpp"
+
+#include <atomic>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <catch2/catch.hpp>
-#include <httplib.h>
 #include <nlohmann/json.hpp>
 
 #include "server/api/http_server.hpp"
@@ -21,8 +21,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using repose::server::HttpServer;
-using repose::server::Service;
-using repose::server::ServiceOptions;
+using repose::tests::Api;
+using repose::tests::TemporaryFolder;
 namespace fs = std::filesystem;
 
 std::string example(const std::string& name) {
@@ -32,86 +32,6 @@ std::string example(const std::string& name) {
   text << file.rdbuf();
   return text.str();
 }
-
-/// A folder that goes with the test.
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "repose-api-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] ServiceOptions options() const {
-    ServiceOptions options;
-    options.database = path_ / "repose.db";
-    options.workers = 2;
-    options.run_jobs = true;
-    return options;
-  }
-
- private:
-  fs::path path_;
-};
-
-/// The service on a free port, and a client of it.
-class Api {
- public:
-  explicit Api(const Folder& folder)
-      : service_(folder.options()),
-        server_(service_, {}),
-        thread_([this] { server_.run(); }),
-        client_("127.0.0.1", server_.port()) {
-    client_.set_keep_alive(true);
-    client_.set_tcp_nodelay(true);
-  }
-  ~Api() {
-    client_.stop();
-    server_.stop();
-    thread_.join();
-  }
-  Api(const Api&) = delete;
-  Api& operator=(const Api&) = delete;
-
-  httplib::Response get(const std::string& path) { return checked(client_.Get(path)); }
-  httplib::Response remove(const std::string& path) { return checked(client_.Delete(path)); }
-  httplib::Response post(const std::string& body, const std::string& type = "application/json") {
-    return checked(client_.Post("/v1/calibrations", body, type));
-  }
-  /// The address of a calibration that was taken on.
-  std::string submit(const std::string& study) {
-    const httplib::Response response = post(study);
-    REQUIRE(response.status == 202);
-    REQUIRE(response.has_header("Location"));
-    return response.get_header_value("Location");
-  }
-  /// Asks again until the state is one of those; what it says then.
-  Json wait(const std::string& path, const std::set<std::string>& states) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(5);
-    while (std::chrono::steady_clock::now() < end) {
-      Json document = Json::parse(get(path).body);
-      if (states.contains(document["state"].get<std::string>())) return document;
-      std::this_thread::yield();
-    }
-    FAIL("the calibration did not come to an end");
-    return {};
-  }
-  [[nodiscard]] Service& service() { return service_; }
-  [[nodiscard]] int port() const { return server_.port(); }
-
- private:
-  static httplib::Response checked(const httplib::Result& result) {
-    if (!result) throw std::runtime_error("no answer: " + httplib::to_string(result.error()));
-    return result.value();
-  }
-
-  Service service_;
-  HttpServer server_;
-  std::thread thread_;
-  httplib::Client client_;
-};
 
 bool is_problem(const httplib::Response& response, int status) {
   return response.status == status &&
@@ -124,7 +44,7 @@ const std::set<std::string> ends{"done", "failed", "cancelled"};
 }  // namespace
 
 TEST_CASE("a study that is sent is calibrated, and its fit is served", "[end_to_end]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Api api(folder);
   const std::string path = api.submit(example("valid/drop-minimal.json"));
   const Json document = api.wait(path, ends);
@@ -149,7 +69,7 @@ TEST_CASE("a study that is sent is calibrated, and its fit is served", "[end_to_
 }
 
 TEST_CASE("pages hold every evaluation once", "[end_to_end]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Api api(folder);
   const std::string path = api.submit(example("valid/drop-minimal.json"));
   api.wait(path, ends);
@@ -172,7 +92,7 @@ TEST_CASE("pages hold every evaluation once", "[end_to_end]") {
 }
 
 TEST_CASE("a fit is still there after a restart", "[end_to_end]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   std::string path, before;
   {
     Api api(folder);
@@ -185,7 +105,7 @@ TEST_CASE("a fit is still there after a restart", "[end_to_end]") {
 }
 
 TEST_CASE("a running calibration is cancelled, and only once", "[end_to_end]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Api api(folder);
   const std::string running = api.submit(example("valid/boac2010-soybean.json"));
   const std::string queued = api.submit(example("valid/held-out-and-allowance.json"));
@@ -199,7 +119,7 @@ TEST_CASE("a running calibration is cancelled, and only once", "[end_to_end]") {
 }
 
 TEST_CASE("a study with problems is refused with all of them", "[end_to_end]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Api api(folder);
   const httplib::Response many = api.post(example("invalid/many-at-once.json"));
   CHECK(is_problem(many, 422));
@@ -210,7 +130,7 @@ TEST_CASE("a study with problems is refused with all of them", "[end_to_end]") {
 }
 
 TEST_CASE("requests that are none are refused with a problem", "[end_to_end]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Api api(folder);
   CHECK(is_problem(api.post("{}", "text/plain"), 415));
   CHECK(is_problem(api.post(std::string((1U << 20U) + 1, ' ')), 413));
@@ -240,7 +160,7 @@ TEST_CASE("requests that are none are refused with a problem", "[end_to_end]") {
 }
 
 TEST_CASE("catalogue, description and health are served", "[end_to_end]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Api api(folder);
   CHECK(Json::parse(api.get("/v1/catalogue").body)["effects"].size() >= 4);
   CHECK(Json::parse(api.get("/v1/openapi.json").body)["openapi"] == "3.1.0");
@@ -249,8 +169,134 @@ TEST_CASE("catalogue, description and health are served", "[end_to_end]") {
 }
 
 TEST_CASE("a second server on the port is an error and does not harm the first", "[end_to_end]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Api api(folder);
-  CHECK_THROWS_AS(HttpServer(api.service(), {.port = api.port()}), std::runtime_error);
+  CHECK_THROWS_AS(HttpServer([](const repose::server::Request&) { return repose::server::Reply{}; },
+                             {.port = api.port()}),
+                  std::runtime_error);
   CHECK(api.get("/livez").status == 200);
+}
+
+TEST_CASE("a key makes a submission happen once, however often it is sent", "[end_to_end]") {
+  const TemporaryFolder folder;
+  std::string body;
+  {
+    Api api(folder);
+    const std::string study = example("valid/drop-minimal.json");
+    const httplib::Response first = api.post_with({{"Idempotency-Key", "night-17"}}, study);
+    REQUIRE(first.status == 202);
+    CHECK(!first.has_header("Idempotency-Replayed"));
+    const httplib::Response again = api.post_with({{"Idempotency-Key", "night-17"}}, study);
+    CHECK(again.status == 202);
+    CHECK(again.body == first.body);
+    CHECK(again.get_header_value("Location") == first.get_header_value("Location"));
+    CHECK(again.get_header_value("Idempotency-Replayed") == "true");
+    CHECK(is_problem(api.post_with({{"Idempotency-Key", "night-17"}}, study + " "), 422));
+    CHECK(api.post_with({{"Idempotency-Key", "night-18"}}, study).status == 202);
+    CHECK(is_problem(api.post_with({{"Idempotency-Key", "two words"}}, study), 400));
+    CHECK(is_problem(api.post_with({{"Idempotency-Key", std::string(65, 'x')}}, study), 400));
+    // What was refused was not done: with the same key it may be mended.
+    CHECK(api.post_with({{"Idempotency-Key", "k"}}, "{}").status == 422);
+    CHECK(api.post_with({{"Idempotency-Key", "k"}}, study).status == 202);
+    CHECK(Json::parse(api.get("/v1/calibrations").body)["items"].size() == 3);
+    body = first.body;
+  }
+  Api api(folder);  // also after a restart
+  CHECK(api.post_with({{"Idempotency-Key", "night-17"}}, example("valid/drop-minimal.json")).body ==
+        body);
+}
+
+TEST_CASE("fifty clients at once with one key make one calibration", "[end_to_end]") {
+  const TemporaryFolder folder;
+  Api api(folder);
+  std::vector<std::thread> clients;
+  std::atomic<int> taken_on = 0;
+  const std::string study = example("valid/drop-minimal.json");
+  for (int i = 0; i < 50; ++i) {
+    clients.emplace_back([&] {
+      httplib::Client client("127.0.0.1", api.port());
+      const auto result =
+          client.Post("/v1/calibrations", {{"Idempotency-Key", "k"}}, study, "application/json");
+      if (result && result->status == 202) ++taken_on;
+    });
+  }
+  for (std::thread& client : clients) client.join();
+  CHECK(taken_on == 50);
+  CHECK(Json::parse(api.get("/v1/calibrations").body)["items"].size() == 1);
+}
+
+TEST_CASE("what a client has already is not sent again", "[end_to_end]") {
+  const TemporaryFolder folder;
+  Api api(folder);
+  for (const std::string path : {"/v1/catalogue", "/v1/calibrations", "/v1/materials/soybean"}) {
+    INFO(path);
+    const httplib::Response first = api.get(path);
+    const std::string tag = first.get_header_value("ETag");
+    REQUIRE(tag.size() > 2);
+    const httplib::Response same = api.get(path, {{"If-None-Match", "\"other\", " + tag}});
+    CHECK(same.status == 304);
+    CHECK(same.body.empty());
+    CHECK(same.get_header_value("ETag") == tag);
+    CHECK(api.get(path, {{"If-None-Match", "\"other\""}}).body == first.body);
+  }
+  const std::string before = api.get("/v1/calibrations").get_header_value("ETag");
+  api.submit(example("valid/drop-minimal.json"));
+  CHECK(api.get("/v1/calibrations", {{"If-None-Match", before}}).status == 200);
+}
+
+TEST_CASE("a change that names what it changes is not made when that has changed", "[end_to_end]") {
+  const TemporaryFolder folder;
+  Api api(folder);
+  const std::string path = api.submit(example("valid/drop-minimal.json"));
+  api.wait(path, ends);
+  const std::string tag = api.get(path).get_header_value("ETag");
+  CHECK(is_problem(api.remove(path, {{"If-Match", "\"other\""}}), 412));
+  CHECK(is_problem(api.remove("/v1/calibrations/99", {{"If-Match", tag}}), 412));
+  CHECK(is_problem(api.remove(path, {{"If-Match", tag}}), 409));  // it has ended, but is the same
+}
+
+TEST_CASE("a request has an identity, the client's where it gives one", "[end_to_end]") {
+  const TemporaryFolder folder;
+  Api api(folder);
+  CHECK(api.get("/livez", {{"X-Request-Id", "abc-1"}}).get_header_value("X-Request-Id") == "abc-1");
+  const std::string made = api.get("/livez").get_header_value("X-Request-Id");
+  CHECK(made.size() == 16);
+  CHECK(api.get("/v2", {{"X-Request-Id", "two words"}}).get_header_value("X-Request-Id").size() ==
+        16);
+  CHECK(api.get("/livez").get_header_value("X-Request-Id") != made);
+}
+
+TEST_CASE("what is not finished says when to ask again", "[end_to_end]") {
+  const TemporaryFolder folder;
+  Api api(folder);
+  const httplib::Response taken_on = api.post(example("valid/drop-minimal.json"));
+  CHECK(taken_on.get_header_value("Retry-After") == "1");
+  const std::string path = taken_on.get_header_value("Location");
+  const httplib::Response running = api.get(path);
+  if (Json::parse(running.body)["finished_at"].is_null()) CHECK(running.has_header("Retry-After"));
+  api.wait(path, ends);
+  CHECK(!api.get(path).has_header("Retry-After"));
+}
+
+TEST_CASE("figures count what was asked, by route and status", "[end_to_end]") {
+  const TemporaryFolder folder;
+  Api api(folder);
+  CHECK(api.get("/readyz").status == 200);
+  for (int i = 0; i < 3; ++i) api.get("/v1/calibrations/99");
+  api.get("/nothing/here");
+  api.wait(api.submit(example("valid/drop-minimal.json")), ends);
+  const httplib::Response page = api.get("/metrics");
+  CHECK(page.get_header_value("Content-Type").find("version=0.0.4") != std::string::npos);
+  for (const std::string line : {
+           "repose_requests_total{route=\"GET /v1/calibrations/{id}\",status=\"404\"} 3\n",
+           "repose_requests_total{route=\"none\",status=\"404\"} 1\n",
+           "repose_requests_total{route=\"POST /v1/calibrations\",status=\"202\"} 1\n",
+           "repose_calibrations{state=\"done\"} 1\n",
+           "repose_event_streams 0\n",
+           "# TYPE repose_request_seconds histogram\n",
+       }) {
+    INFO(line);
+    CHECK(page.body.find(line) != std::string::npos);
+  }
+  CHECK(page.body.find("repose_evaluations_total 0\n") == std::string::npos);
 }

@@ -1,0 +1,168 @@
+#include "server/api/api.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <iostream>
+#include <random>
+#include <utility>
+
+#include "db/store.hpp"
+#include "server/access/secret.hpp"
+#include "server/api/conditional.hpp"
+#include "server/api/problem.hpp"
+#include "server/jobs/clock.hpp"
+#include "server/json/reply_json.hpp"
+#include "server/service.hpp"
+
+namespace repose::server {
+
+namespace {
+
+constexpr std::size_t longest_key = 64;  // of those that clients choose
+
+/// Letters that may go into a log or a header as they are.
+bool is_plain(std::string_view text) {
+  return !text.empty() && text.size() <= longest_key && std::ranges::all_of(text, [](char c) {
+    return c > ' ' && c < 0x7f && c != '"' && c != '\\';
+  });
+}
+
+/// The client's, where it is one that can be repeated; else a new one.
+std::string request_id(const Request& request) {
+  if (std::string given = request.field("x-request-id"); is_plain(given)) return given;
+  static thread_local std::mt19937_64 random{std::random_device{}()};
+  static constexpr std::string_view digits = "0123456789abcdef";
+  std::string id;
+  for (int i = 0; i < 16; ++i) id += digits[random() % digits.size()];
+  return id;
+}
+
+bool reads(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
+
+void log_failure(const Request& request, const std::string& id, const char* what) {
+  std::clog << "http: " + id + " " + request.method + " " + request.path + " failed: " + what +
+                   "\n";
+}
+
+/// What the store could not do is tried again; all else is our own mistake.
+Reply failure(const db::Error& error) {
+  constexpr int busy = 5, input_output = 10, full = 13;  // SQLite's primary result codes
+  const int primary = error.code() & 0xff;
+  if (primary != busy && primary != input_output && primary != full) {
+    return problem_reply(500, "The service failed; its log says why.");
+  }
+  Reply reply = problem_reply(503, "The store cannot take it now; nothing was changed.");
+  reply.headers.emplace_back("Retry-After", "10");
+  return reply;
+}
+
+/// Adds the tag to what was read; nothing more where the client has it already.
+void tag(const Request& request, Reply& reply) {
+  if (!reads(request) || reply.status != 200 || reply.stream) return;
+  const std::string own = entity_tag(reply.body);
+  reply.headers.emplace_back("ETag", own);
+  if (!names_tag(request.field("if-none-match"), own)) return;
+  reply.status = 304;
+  reply.body.clear();
+}
+
+}  // namespace
+
+Reply Api::respond(Request request) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string id = request_id(request);
+  request.api = this;
+  const auto route = find_route(request);
+  Reply reply;
+  try {
+    reply = route ? answer(**route, request) : route.error();
+    tag(request, reply);
+  } catch (const db::Error& error) {
+    log_failure(request, id, error.what());
+    reply = failure(error);
+  } catch (const std::exception& error) {
+    log_failure(request, id, error.what());
+    reply = problem_reply(500, "The service failed; its log says why.");
+  }
+  if (reply.status == 202) reply.headers.emplace_back("Retry-After", "1");
+  reply.headers.emplace_back("X-Request-Id", id);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  metrics_.count(request.method, route ? (*route)->pattern : "", reply.status, taken.count());
+  return reply;
+}
+
+/// Why the one who asks may not, where that is so. As long as there are no tokens nobody needs one.
+std::optional<Reply> Api::refuse(const Route& route, Request& request) {
+  const Scope needed = needed_scope(route);
+  if (tokens_ == nullptr || needed == Scope::nothing || tokens_->all().empty()) return std::nullopt;
+  const auto token = tokens_->find(request.field("authorization"));
+  const Scope given = token ? scope_at(*token, microseconds_now()) : Scope::nothing;
+  if (given == Scope::nothing) {
+    // The same words whether it is unknown, expired or revoked.
+    Reply reply = problem_reply(401, "Send a token that is valid: Authorization: Bearer rps_...");
+    reply.headers.emplace_back("WWW-Authenticate", "Bearer");
+    return reply;
+  }
+  request.user = token->id;
+  if (given >= needed) return std::nullopt;
+  return problem_reply(403,
+                       "This needs a token with the scope " +
+                           std::string(scope_names.at(static_cast<std::size_t>(needed))) + ".");
+}
+
+Reply Api::answer(const Route& route, Request& request) {
+  if (auto refusal = refuse(route, request)) return std::move(*refusal);
+  if (reads(request)) return run_route(route, service_, request);
+  if (!request.field("if-match").empty()) return if_unchanged(route, request);
+  if (!request.field("idempotency-key").empty()) return once(route, request);
+  return run_route(route, service_, request);
+}
+
+/// Does it where nobody has done it with that key, else says what was answered then.
+Reply Api::once(const Route& route, const Request& request) {
+  const std::string key = request.field("idempotency-key");
+  if (!is_plain(key)) {
+    return problem_reply(400,
+                         "An Idempotency-Key has 1 to " + std::to_string(longest_key) +
+                             " printable letters without blanks, quotes or backslashes.");
+  }
+  const std::string request_digest = digest(request.method + " " + request.path + "\n" +
+                                            request.content_type + "\n" + request.body);
+  Reply reply;
+  const std::string owned = request.user + " " + key;  // nobody sees what others were answered
+  const auto earlier = service_.once(owned, request_digest, [&]() -> std::optional<std::string> {
+    reply = run_route(route, service_, request);
+    if (reply.status >= 300)
+      return std::nullopt;  // nothing was done: it may be mended and sent again
+    return print_reply(reply);
+  });
+  if (!earlier) return reply;
+  if (earlier->request_digest != request_digest) {
+    return problem_reply(422, "That Idempotency-Key was used for another request.");
+  }
+  reply = read_reply(earlier->reply);
+  reply.headers.emplace_back("Idempotency-Replayed", "true");
+  return reply;
+}
+
+/// Does it where the thing is still as the client has read it.
+Reply Api::if_unchanged(const Route& route, const Request& request) {
+  const std::scoped_lock hold(changes_);
+  Request reading;
+  reading.method = "GET";
+  reading.path = request.path;
+  const auto current = find_route(reading);
+  if (!current) return problem_reply(400, "There is nothing to match at this address.");
+  const Reply now = run_route(**current, service_, reading);
+  if (now.status != 200 || !names_tag(request.field("if-match"), entity_tag(now.body))) {
+    return problem_reply(412, "It has changed since it was read, or is not there.");
+  }
+  return run_route(route, service_, request);
+}
+
+std::string Api::metrics() const {
+  return metrics_.print(service_.figures(), sockets_ ? sockets_() : TransportFigures{});
+}
+
+}  // namespace repose::server

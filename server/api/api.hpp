@@ -1,0 +1,38 @@
+/// Api: what every request has in common, whatever its route: who asks, whether it was asked
+/// before, whether the thing has changed since the client read it, and what is noted of it.
+#pragma once
+
+#include <functional>
+
+#include "server/access/tokens.hpp"
+#include "server/api/metrics.hpp"
+#include "server/api/route.hpp"
+
+namespace repose::server {
+
+class Api {
+ public:
+  /// Without tokens anyone may do anything: for a service that only this machine reaches.
+  explicit Api(Service& service, Tokens* tokens = nullptr) : service_(service), tokens_(tokens) {}
+
+  /// Never throws.
+  Reply respond(Request request);
+
+  /// Where the figures of the sockets come from.
+  void watch(std::function<TransportFigures()> sockets) { sockets_ = std::move(sockets); }
+  [[nodiscard]] std::string metrics() const;
+
+ private:
+  std::optional<Reply> refuse(const Route& route, Request& request);
+  Reply answer(const Route& route, Request& request);
+  Reply once(const Route& route, const Request& request);
+  Reply if_unchanged(const Route& route, const Request& request);
+
+  Service& service_;
+  Tokens* tokens_;
+  Metrics metrics_;
+  std::function<TransportFigures()> sockets_;
+  std::mutex changes_;  ///< between the look at a thing and its change nobody else changes it
+};
+
+}  // namespace repose::server

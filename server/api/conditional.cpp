@@ -1,0 +1,27 @@
+#include "server/api/conditional.hpp"
+
+#include <algorithm>
+
+#include "server/access/secret.hpp"
+
+namespace repose::server {
+
+std::string entity_tag(std::string_view body) {
+  constexpr std::size_t letters = 32;  // of a SHA-256 in hexadecimal: 128 bits
+  return "\"" + digest(body).substr(0, letters) + "\"";
+}
+
+bool names_tag(std::string_view field, std::string_view tag) {
+  if (field == "*") return true;
+  while (!field.empty()) {
+    const std::size_t end = std::min(field.find(','), field.size());
+    std::string_view named = field.substr(0, end);
+    field.remove_prefix(std::min(end + 1, field.size()));
+    while (!named.empty() && named.front() == ' ') named.remove_prefix(1);
+    while (!named.empty() && named.back() == ' ') named.remove_suffix(1);
+    if (named == tag) return true;
+  }
+  return false;
+}
+
+}  // namespace repose::server

@@ -1,0 +1,18 @@
+/// CSV (RFC 4180): text <-> rows of cells.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace repose::server {
+
+using CsvRows = std::vector<std::vector<std::string>>;
+
+/// The rows of a text; blank lines are none. A quote that is not closed ends with the text.
+CsvRows read_csv(std::string_view text);
+
+/// Quoted where it must be.
+std::string print_csv(const CsvRows& rows);
+
+}  // namespace repose::server

@@ -1,0 +1,52 @@
+#include "server/json/event_json.hpp"
+
+#include <utility>
+
+#include "server/json/job_json.hpp"
+#include "server/json/text.hpp"
+
+namespace repose::server {
+
+namespace {
+
+/// What the event says beside its number and kind.
+Json data_of(const db::EventRecord& event) {
+  Json data;
+  data["calibration"] = event.calibration ? Json(*event.calibration) : Json(nullptr);
+  if (event.diagnosis) data["diagnosis"] = *event.diagnosis;
+  if (event.name) data["name"] = *event.name;
+  if (event.misfit) data["misfit"] = number_or_null(*event.misfit);
+  if (event.error) data["error"] = *event.error;
+  if (event.detail) data["progress"] = Json::parse(*event.detail, nullptr, false);
+  return data;
+}
+
+}  // namespace
+
+std::string print_events(const std::vector<db::EventRecord>& events, int limit) {
+  Json items = Json::array();
+  for (const auto& event : events) {
+    Json item;
+    item["id"] = event.id;
+    item["created_at"] = print_time(event.created_at);
+    item["kind"] = event.kind;
+    item["data"] = data_of(event);
+    items.push_back(std::move(item));
+  }
+  const bool full = events.size() >= static_cast<std::size_t>(limit) && !events.empty();
+  Json json;
+  json["items"] = std::move(items);
+  json["next"] = full ? Json(events.back().id) : Json(nullptr);
+  return to_text(json);
+}
+
+std::string print_event_stream(const std::vector<db::EventRecord>& events) {
+  std::string text;
+  for (const auto& event : events) {
+    text += "id: " + std::to_string(event.id) + "\nevent: " + event.kind +
+            "\ndata: " + to_text(data_of(event)) + "\n\n";
+  }
+  return text;
+}
+
+}  // namespace repose::server

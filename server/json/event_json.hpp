@@ -1,0 +1,17 @@
+/// Events -> documents, and -> server-sent events (the HTML standard's text/event-stream).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "db/event_store.hpp"
+
+namespace repose::server {
+
+/// {"items":[{"id","created_at","kind","data"}],"next"}
+std::string print_events(const std::vector<db::EventRecord>& events, int limit);
+
+/// id, event and data of each.
+std::string print_event_stream(const std::vector<db::EventRecord>& events);
+
+}  // namespace repose::server
