@@ -174,10 +174,14 @@ const std::map<std::string, Check::Rule> Check::rules{
 
 }  // namespace
 
-std::vector<std::string> violations(const Json& schema, const Json& document) {
+std::vector<std::string> violations(const Json& root, const Json& schema, const Json& document) {
   std::vector<std::string> wrong;
-  Check(schema, wrong).run(schema, document, "");
+  Check(root, wrong).run(schema, document, "");
   return wrong;
+}
+
+std::vector<std::string> violations(const Json& schema, const Json& document) {
+  return violations(schema, schema, document);
 }
 
 }  // namespace repose::tests

@@ -15,6 +15,9 @@ using Json = nlohmann::ordered_json;
 /// known here is reported too: a check that does nothing would pass for one that passed.
 std::vector<std::string> violations(const Json& schema, const Json& document);
 
+/// The same for a schema within a larger document, in which its references lead.
+std::vector<std::string> violations(const Json& root, const Json& schema, const Json& document);
+
 /// For CHECK_THAT, which shows what is wrong: nothing is.
 inline auto conforms() {
   static const std::vector<std::string> nothing;  // the matcher keeps a reference
