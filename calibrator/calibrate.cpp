@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <utility>
 
 #include "calibrator/answer.hpp"
 #include "calibrator/baselines/baseline.hpp"
 #include "calibrator/design.hpp"
+#include "calibrator/known_runs.hpp"
 #include "calibrator/ledger.hpp"
 #include "calibrator/misfit.hpp"
 #include "calibrator/offset.hpp"
@@ -41,7 +41,6 @@ class Search {
   using Requests = std::vector<Ledger::Request>;
 
   Fit run_baseline();
-  [[nodiscard]] bool knows_enough() const;
   bool start();
   void replicate();
   void pair();
@@ -138,25 +137,9 @@ Fit Search::run_baseline() {
   return finish(converged ? StopReason::converged : StopReason::budget);
 }
 
-/// Whether known runs tell enough of every free parameter to begin with: none of them stays at one
-/// value in all but a few.
-bool Search::knows_enough() const {
-  for (std::size_t k = 0; k < calibration_.free.size(); ++k) {
-    std::map<double, int> sites;
-    int all = 0, commonest = 0;
-    for (const Site& site : ledger_.sites()) {
-      if (!std::ranges::any_of(site.searched, &SiteRun::succeeded)) continue;
-      ++all;
-      commonest = std::max(commonest, ++sites[site.at[k]]);
-    }
-    if (all - commonest < plan_.least) return false;
-  }
-  return !ledger_.sites().empty();
-}
-
 /// Space-filling points; a second set where too many of the first failed. False if still too few.
 bool Search::start() {
-  if (knows_enough()) return true;
+  if (know_enough(ledger_, plan_.least)) return true;
   for (std::uint64_t attempt = 0; attempt < 2 && !stop_.stop_requested(); ++attempt) {
     if (plan_.total() - plan_.start > ledger_.remaining() - plan_.start) break;
     Requests requests;

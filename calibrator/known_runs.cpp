@@ -1,3 +1,5 @@
+#include "calibrator/known_runs.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -42,6 +44,25 @@ std::optional<Level> level_of(const Calibration& calibration, engine::Fidelity f
 
 }  // namespace
 
+bool has_set(const SearchSpace& space, const ParameterSet& parameters) {
+  const ParameterSet here = space.at(space.coordinates(parameters));
+  return same(without_nulls(here), without_nulls(parameters));
+}
+
+bool know_enough(const Ledger& ledger, int least) {
+  for (std::size_t k = 0; k < ledger.space().dimensions(); ++k) {
+    std::map<double, int> sites;
+    int all = 0, commonest = 0;
+    for (const Site& site : ledger.sites()) {
+      if (!std::ranges::any_of(site.searched, &SiteRun::succeeded)) continue;
+      ++all;
+      commonest = std::max(commonest, ++sites[site.at[k]]);
+    }
+    if (all - commonest < least) return false;
+  }
+  return !ledger.sites().empty();
+}
+
 std::vector<KnownRun> known_runs(const Calibration& calibration,
                                  std::span<const engine::Evaluation> evaluations) {
   const SearchSpace space(calibration);
@@ -73,8 +94,7 @@ std::vector<KnownRun> known_runs(const Calibration& calibration,
     for (const Run& run : by_seed[key]) {
       if (std::ranges::count(run.parts, nullptr) > 0) continue;
       const ParameterSet& parameters = run.first->trial.parameters;
-      const ParameterSet here = space.at(space.coordinates(parameters));
-      if (!same(without_nulls(here), without_nulls(parameters))) continue;
+      if (!has_set(space, parameters)) continue;
       std::vector<engine::Evaluation> parts;
       double grain_steps = 0.0;
       for (const engine::Evaluation* part : run.parts) {

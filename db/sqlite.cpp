@@ -75,6 +75,14 @@ std::int64_t Connection::last_id() const { return sqlite3_last_insert_rowid(hand
 std::int64_t Connection::changes() const { return sqlite3_changes64(handle_); }
 bool Connection::in_transaction() const { return sqlite3_get_autocommit(handle_) == 0; }
 
+void Connection::copy_to(Connection& other) {
+  sqlite3_backup* copy = sqlite3_backup_init(other.handle_, "main", handle_, "main");
+  if (copy == nullptr) other.fail("cannot begin a copy");
+  sqlite3_backup_step(copy, -1);
+  // The code of a step that failed comes again from here.
+  if (sqlite3_backup_finish(copy) != SQLITE_OK) other.fail("cannot copy into it");
+}
+
 Statement::Statement(Connection& connection, std::string_view sql) : connection_(connection) {
   if (sqlite3_prepare_v2(
           connection.handle_, sql.data(), static_cast<int>(sql.size()), &handle_, nullptr) !=

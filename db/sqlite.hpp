@@ -29,6 +29,8 @@ class Connection {
   [[nodiscard]] std::int64_t last_id() const;
   [[nodiscard]] std::int64_t changes() const;  ///< rows of the last statement
   [[nodiscard]] bool in_transaction() const;
+  /// Copies the whole database, as it is at one moment, into an empty one.
+  void copy_to(Connection& other);
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
 
  private:

@@ -37,6 +37,15 @@ std::string select_calibration(bool documents, std::string_view rest) {
          " FROM calibration " + std::string(rest);
 }
 
+/// A damaged file is not written to.
+void quick_check(Connection& connection) {
+  Statement row = connection.prepare("PRAGMA quick_check(1)");
+  if (row.step() && row.text(0) == "ok") return;
+  throw Error(0,
+              "database " + connection.file().string() + " is damaged (" + row.text(0) +
+                  "): `repose doctor` tells how, `repose restore` puts a backup in its place");
+}
+
 void set_up(Connection& connection, Access access) {
   connection.run("PRAGMA foreign_keys = ON");
   connection.run("PRAGMA trusted_schema = OFF");
@@ -49,6 +58,7 @@ void set_up(Connection& connection, Access access) {
   check_schema(connection);  // before anything is written to a file that may not be ours
   connection.run("PRAGMA journal_mode = WAL");
   connection.run("PRAGMA synchronous = FULL");
+  quick_check(connection);
   migrate(connection);
 }
 

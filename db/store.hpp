@@ -110,6 +110,7 @@ class Store {
   friend class MeasurementStore;  // db/measurement_store.hpp
   friend class ReplyStore;        // db/reply_store.hpp
   friend struct Inspection;       // db/figures.cpp
+  friend class ScheduleStore;     // db/schedule_store.hpp
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <string>
 #include <system_error>
@@ -16,6 +15,7 @@
 #include "engine/any_machine.hpp"
 #include "engine/catalogue.hpp"
 #include "engine/evaluate.hpp"
+#include "server/cli/arguments.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
@@ -23,9 +23,6 @@
 namespace repose::server {
 
 namespace {
-
-/// What the command line asked for; empty until a command is read.
-using Work = std::function<int()>;
 
 constexpr const char* main_footer =
     "A five-minute start:\n"
@@ -53,20 +50,6 @@ constexpr const char* study_footer =
     "interrupted one was, and what is complete is printed again without simulating. Ctrl-C stops "
     "and\n"
     "reports what there is.";
-
-CLI::Option* add_database(CLI::App& command, std::filesystem::path& database) {
-  return command
-      .add_option("--db,--database",
-                  database,
-                  "Database file (default: $REPOSE_DB, else repose/repose.db in "
-                  "$XDG_DATA_HOME or ~/.local/share)")
-      ->type_name("FILE");
-}
-
-void add_json(CLI::App& command, Form& form, const char* what) {
-  command.add_flag_callback(
-      "--json", [&form] { form = Form::json; }, what);
-}
 
 void add_evaluate(CLI::App& app, EvaluateCommand& options, Work& work) {
   CLI::App& command = *app.add_subcommand("evaluate", "Run one virtual experiment");
@@ -391,6 +374,9 @@ struct Commands {
   EvaluateCommand evaluate;
   CalibrateCommand calibrate;
   MissingEffectCommand missing_effect;
+  ScheduleCommand schedule;
+  ExportCommand fit_export;
+  StoreCommand store;
   ReportCommand report;
   ListCommand list;
   ShowCommand show;
@@ -435,6 +421,10 @@ int run_command_line(int argc, const char* const* argv) {
   add_evaluate(app, commands.evaluate, work);
   add_calibrate(app, commands.calibrate, work);
   add_missing_effect(app, commands.missing_effect, work);
+  add_schedule(app, commands.schedule, work);
+  add_nightly(app, commands.schedule, work);
+  add_export(app, commands.fit_export, work);
+  add_store(app, commands.store, work);
   add_report(app, commands.report, work);
   add_serve(app, commands.serve, work);
   add_token(app, commands.token, work);

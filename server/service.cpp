@@ -11,6 +11,7 @@
 #include "db/store.hpp"
 #include "engine/evaluate.hpp"
 #include "server/access/secret.hpp"
+#include "server/exports/export_fit.hpp"
 #include "server/jobs/clock.hpp"
 #include "server/jobs/scheduler.hpp"
 #include "server/jobs/workers.hpp"
@@ -22,6 +23,10 @@
 #include "server/json/measurement_set_json.hpp"
 #include "server/measurements.hpp"
 #include "server/missing_effect.hpp"
+#include "server/nightly/continuation.hpp"
+#include "server/nightly/night_watch.hpp"
+#include "server/nightly/nights.hpp"
+#include "server/schedules.hpp"
 
 namespace repose::server {
 
@@ -68,13 +73,15 @@ struct Service::State {
       : store(open_store(options)),
         worker_options{.workers = options.workers,
                        .program = options.program,
-                       .time_limit = options.evaluation_time_limit} {
+                       .time_limit = options.evaluation_time_limit},
+        clock(options.clock) {
     if (options.read_only) return;
     store.requeue_all();  // what ran when the last process ended runs no more
     if (!options.run_jobs) return;
     scheduler = std::make_unique<Scheduler>(
         [this](std::int64_t id, const std::stop_token& stop) { run_job(id, stop); });
     for (const std::int64_t id : store.in_state("queued")) scheduler->submit(id);
+    watch = std::make_unique<NightWatch>([this](const std::stop_token& stop) { look(stop); });
   }
 
   void run_job(std::int64_t id, const std::stop_token& stop);
@@ -84,15 +91,31 @@ struct Service::State {
            const CalibrationEvents& events);
   void conclude(std::int64_t id, const Calibration& calibration, const Fit& fit);
   bool take_cancel(std::int64_t id);
+  void look(const std::stop_token& stop);
 
   db::Store store;
   WorkerOptions worker_options;
+  std::function<std::int64_t()> clock;
   std::mutex mutex;
   std::optional<std::chrono::steady_clock::time_point> probed;  ///< when ready() looked last
   bool writable = false;                                        ///< as it found then
+  std::mutex nights;                                            ///< held while nights are ended
   std::set<std::int64_t> cancelled;      ///< running ones that a user has cancelled
-  std::unique_ptr<Scheduler> scheduler;  // last: its thread uses all of the above
+  std::unique_ptr<Scheduler> scheduler;  // its thread uses all of the above
+  std::unique_ptr<NightWatch> watch;     // last: its thread uses the scheduler too
 };
+
+/// What the clock asks for. A night that was cut off after its calibration is ended here too.
+void Service::State::look(const std::stop_token& stop) {
+  try {
+    for (const std::int64_t id : begin_nights(store, Begin::due, clock())) scheduler->submit(id);
+    const std::unique_lock hold(nights, std::try_to_lock);
+    if (hold.owns_lock()) end_nights(store, worker_options, stop, clock());
+  } catch (const std::exception&) {
+    // The store fails (a full disk): the next look may find it well again.
+    return;
+  }
+}
 
 bool Service::State::take_cancel(std::int64_t id) {
   const std::scoped_lock hold(mutex);
@@ -135,8 +158,7 @@ void Service::State::run(std::int64_t id,
     if (events.progress) events.progress(progress);
   };
   try {
-    const auto known = inherited_runs(store, calibration);
-    const Fit fit = calibrator::calibrate(calibration, evaluator, stop, observer, known);
+    const Fit fit = calibrate_from_store(store, id, calibration, evaluator, stop, observer);
     if (last) store.set_progress(id, print_progress(calibration, *last));
     // A fit that lacks evaluations because of a stop is no fit.
     interrupted |= stop.stop_requested() || fit.stop == calibrator::StopReason::cancelled;
@@ -164,6 +186,8 @@ void Service::State::run_job(std::int64_t id, const std::stop_token& stop) {
       return;
     }
     run(id, *calibration, stop, {});
+    const std::scoped_lock hold(nights);
+    end_nights(store, worker_options, stop, clock());
   } catch (const std::exception&) {
     // The store itself fails (a full disk): the row stays as it is, and the next start takes it up.
     return;
@@ -286,6 +310,54 @@ Answer<std::string> Service::diagnoses(std::int64_t calibration) const {
 
 Answer<std::string> Service::extension_study(std::int64_t id, const std::string& effect) const {
   return server::extension_study(state_->store, id, effect);
+}
+
+Answer<std::string> Service::export_fit(std::int64_t id, std::string_view format) const {
+  return server::export_fit(state_->store, id, format);
+}
+
+Answer<std::string> Service::add_schedule(std::string_view document) {
+  return server::add_schedule(state_->store, document, state_->clock());
+}
+
+Answer<std::string> Service::replace_schedule(std::int64_t id, std::string_view document) {
+  return server::replace_schedule(state_->store, id, document, state_->clock());
+}
+
+Answer<std::string> Service::remove_schedule(std::int64_t id) {
+  return server::remove_schedule(state_->store, id, state_->clock());
+}
+
+Answer<std::string> Service::schedule(std::int64_t id) const {
+  return server::schedule(state_->store, id, state_->clock());
+}
+
+std::string Service::schedules() const { return server::schedules(state_->store, state_->clock()); }
+
+Answer<std::string> Service::nights(std::int64_t schedule,
+                                    int limit,
+                                    std::optional<std::int64_t> before) const {
+  return server::nights(state_->store, schedule, limit, before);
+}
+
+Answer<std::string> Service::promotions(std::int64_t schedule) const {
+  return server::promotions(state_->store, schedule);
+}
+
+Answer<std::string> Service::promote(std::int64_t schedule, std::string_view document) {
+  return server::promote(state_->store, schedule, document, state_->clock());
+}
+
+void Service::run_nights(bool all, const std::stop_token& stop, const CalibrationEvents& events) {
+  const Begin which = all ? Begin::all : Begin::due;
+  for (const std::int64_t id : begin_nights(state_->store, which, state_->clock())) {
+    const auto record = state_->store.calibration(id);
+    const auto calibration = parse_calibration(record->request);
+    if (!calibration || !state_->store.start(id, microseconds_now())) continue;
+    state_->run(id, *calibration, stop, events);
+    if (stop.stop_requested()) return;
+  }
+  end_nights(state_->store, state_->worker_options, stop, state_->clock());
 }
 
 std::vector<engine::Evaluation> Service::evaluate(const engine::Trial& trial, int replicates) {

@@ -18,6 +18,7 @@
 #include "db/measurement_store.hpp"
 #include "db/reply_store.hpp"
 #include "engine/result.hpp"
+#include "server/jobs/clock.hpp"
 #include "server/json/problem.hpp"
 
 namespace repose::server {
@@ -42,6 +43,8 @@ struct ServiceOptions {
   double evaluation_time_limit = 3600.0;  ///< s of wall time
   bool read_only = false;                 ///< look only: works while another process writes
   bool run_jobs = false;                  ///< start the queued calibrations in the background
+  /// Microseconds since 1970 UTC, for what the clock starts.
+  std::function<std::int64_t()> clock = microseconds_now;
 };
 
 /// What happens while a calibration runs in the foreground.
@@ -133,6 +136,23 @@ class Service {
   [[nodiscard]] Answer<std::function<std::string()>> event_stream(
       const std::optional<std::int64_t>& calibration,
       const std::optional<std::int64_t>& after) const;
+
+  /// The fit of a finished calibration for other programs; `format` is one of export_format_names.
+  [[nodiscard]] Answer<std::string> export_fit(std::int64_t id, std::string_view format) const;
+
+  // Schedules: see server/schedules.hpp, and server/nightly/ for what a night does.
+  Answer<std::string> add_schedule(std::string_view document);
+  Answer<std::string> replace_schedule(std::int64_t id, std::string_view document);
+  Answer<std::string> remove_schedule(std::int64_t id);
+  [[nodiscard]] Answer<std::string> schedule(std::int64_t id) const;
+  [[nodiscard]] std::string schedules() const;
+  [[nodiscard]] Answer<std::string> nights(std::int64_t schedule,
+                                           int limit,
+                                           std::optional<std::int64_t> before) const;
+  [[nodiscard]] Answer<std::string> promotions(std::int64_t schedule) const;
+  Answer<std::string> promote(std::int64_t schedule, std::string_view document);
+  /// Runs the nights that are due (or one of every schedule) here and now.
+  void run_nights(bool all, const std::stop_token& stop, const CalibrationEvents& events);
 
   /// One virtual experiment, `replicates` seeds from `seed` on; stored like any other evaluation.
   std::vector<engine::Evaluation> evaluate(const engine::Trial& trial, int replicates);

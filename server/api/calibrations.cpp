@@ -58,6 +58,17 @@ Reply cancel_calibration(Service& service, const Request& request) {
   return reply_of(service.cancel(request.id), 202);
 }
 
+/// Input files of other codes are text; JSON and CSV have types of their own.
+Reply export_fit(Service& service, const Request& request) {
+  Reply reply = reply_of(service.export_fit(request.id, request.name), 200);
+  if (reply.status != 200) return reply;
+  if (request.name == "csv")
+    reply.content_type = "text/csv; charset=utf-8; header=present";
+  else if (request.name != "json")
+    reply.content_type = "text/plain; charset=utf-8";
+  return reply;
+}
+
 Reply list_best_fits(Service& service, const Request& request) {
   Query query(request);
   const auto name = query.text("name");

@@ -10,6 +10,7 @@ Reply list_calibrations(Service& service, const Request& request);
 Reply get_calibration(Service& service, const Request& request);
 Reply list_evaluations(Service& service, const Request& request);
 Reply cancel_calibration(Service& service, const Request& request);
+Reply export_fit(Service& service, const Request& request);
 Reply list_best_fits(Service& service, const Request& request);
 
 Reply follow_calibration(Service& service, const Request& request);
@@ -25,6 +26,15 @@ Reply get_openapi(Service& service, const Request& request);
 
 Reply list_materials(Service& service, const Request& request);
 Reply get_material(Service& service, const Request& request);
+
+Reply add_schedule(Service& service, const Request& request);
+Reply list_schedules(Service& service, const Request& request);
+Reply get_schedule(Service& service, const Request& request);
+Reply replace_schedule(Service& service, const Request& request);
+Reply remove_schedule(Service& service, const Request& request);
+Reply list_nights(Service& service, const Request& request);
+Reply list_promotions(Service& service, const Request& request);
+Reply promote(Service& service, const Request& request);
 
 Reply get_health(Service& service, const Request& request);
 Reply get_readiness(Service& service, const Request& request);

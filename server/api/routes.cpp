@@ -47,7 +47,7 @@ constexpr std::string_view json = "application/json", stream = "text/event-strea
                            table_form = "text/csv";
 
 // clang-format off
-constexpr std::array<Route, 20> table{{
+constexpr std::array<Route, 29> table{{
     {"POST", "/v1/calibrations", "submitCalibration", "Queue a calibration.",
      "submission", 202, "calibration_document", {}, handlers::submit_calibration},
     {"GET", "/v1/calibrations", "listCalibrations", "List calibrations, newest first.",
@@ -56,6 +56,8 @@ constexpr std::array<Route, 20> table{{
      "", 200, "calibration_document", {}, handlers::get_calibration},
     {"GET", "/v1/calibrations/{id}/evaluations", "listEvaluations", "List its evaluations in the order of work.",
      "", 200, "evaluation_list", evaluation_fields, handlers::list_evaluations},
+    {"GET", "/v1/calibrations/{id}/exports/{name}", "exportFit", "Get the fit as json, csv, or input of liggghts, lammps, yade.",
+     "", 200, "", {}, handlers::export_fit},
     {"DELETE", "/v1/calibrations/{id}", "cancelCalibration", "Cancel a calibration that is not finished.",
      "", 202, "calibration_document", {}, handlers::cancel_calibration},
     {"GET", "/v1/calibrations/{id}/events", "followCalibration", "Follow a calibration: a stream of events, or a page of them.",
@@ -78,6 +80,22 @@ constexpr std::array<Route, 20> table{{
      "", 200, "material_list", {}, handlers::list_materials},
     {"GET", "/v1/materials/{name}", "getMaterial", "Get the published properties of a grain, with their sources.",
      "", 200, "published_material", {}, handlers::get_material},
+    {"POST", "/v1/schedules", "addSchedule", "Have a study calibrated again at its times.",
+     "schedule", 201, "schedule_document", {}, handlers::add_schedule},
+    {"GET", "/v1/schedules", "listSchedules", "List the schedules.",
+     "", 200, "schedule_list", {}, handlers::list_schedules},
+    {"GET", "/v1/schedules/{id}", "getSchedule", "Get a schedule: when next, what the last night came to, the fit in force.",
+     "", 200, "schedule_document", {}, handlers::get_schedule},
+    {"PUT", "/v1/schedules/{id}", "replaceSchedule", "Put another schedule in its place: new measurements, for instance.",
+     "schedule", 200, "schedule_document", {}, handlers::replace_schedule},
+    {"DELETE", "/v1/schedules/{id}", "removeSchedule", "Begin no more nights; the history stays.",
+     "", 200, "schedule_document", {}, handlers::remove_schedule},
+    {"GET", "/v1/schedules/{id}/nights", "listNights", "List its nights, newest first.",
+     "", 200, "night_list", list_fields, handlers::list_nights},
+    {"GET", "/v1/schedules/{id}/promotions", "listPromotions", "List which fit was in force from when on, newest first.",
+     "", 200, "promotion_list", {}, handlers::list_promotions},
+    {"POST", "/v1/schedules/{id}/promotions", "promote", "Put a fit of the schedule in force by hand: a candidate, or an earlier one.",
+     "promotion", 200, "schedule_document", {}, handlers::promote},
     {"GET", "/v1/openapi.json", "getDescription", "Get this description.",
      "", 200, "", {}, handlers::get_openapi},
     {"GET", "/healthz", "getHealth", "See whether the service can work.",

@@ -59,6 +59,47 @@ int compare_command(const MissingEffectCommand& command);
 int diagnose_command(const MissingEffectCommand& command);
 int extend_command(const MissingEffectCommand& command);
 
+/// Calibrations that the clock repeats.
+struct ScheduleCommand {
+  std::int64_t id = 0;           ///< of the schedule; to add: one to replace, 0 for a new one
+  std::int64_t calibration = 0;  ///< to start from, or to put in force
+  std::filesystem::path study;
+  std::string name;  ///< empty: the study's
+  std::string cron = "30 2 * * *";
+  std::string time_zone = "UTC";
+  int jitter_minutes = 0;
+  int catch_up_hours = 12;
+  std::filesystem::path database;
+  unsigned workers = 0;
+  int limit = 50;
+  bool once = false;  ///< it says so: the command does nothing else
+  bool all = false;   ///< nights of every schedule, due or not
+  Form form = Form::text;
+};
+int schedule_add_command(const ScheduleCommand& command);
+int schedule_list_command(const ScheduleCommand& command);
+int schedule_show_command(const ScheduleCommand& command);
+int schedule_remove_command(const ScheduleCommand& command);
+int schedule_history_command(const ScheduleCommand& command);
+int schedule_promote_command(const ScheduleCommand& command);
+int nightly_command(const ScheduleCommand& command);
+
+/// Of the database as a file.
+struct StoreCommand {
+  std::filesystem::path database;
+  std::filesystem::path file;  ///< the backup
+};
+int backup_command(const StoreCommand& command);
+int restore_command(const StoreCommand& command);
+int doctor_command(const StoreCommand& command);
+
+struct ExportCommand {
+  std::int64_t id = 0;
+  std::filesystem::path database;
+  std::string format = "json";
+};
+int export_command(const ExportCommand& command);
+
 struct ReportCommand {
   std::int64_t id = 0;
   std::filesystem::path database;

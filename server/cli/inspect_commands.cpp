@@ -64,6 +64,17 @@ int report_command(const ReportCommand& command) {
   return interrupt.happened() ? exit_code::interrupted : exit_code::done;
 }
 
+int export_command(const ExportCommand& command) {
+  if (!database_is_there(command.database)) return exit_code::misused;
+  ServiceOptions options;
+  options.database = command.database;
+  options.read_only = true;
+  const auto answer = Service(options).export_fit(command.id, command.format);
+  if (!answer) return report_error({answer.error().message, {}}, false);
+  std::cout << *answer;
+  return exit_code::done;
+}
+
 int list_command(const ListCommand& command) {
   if (!database_is_there(command.database)) return exit_code::misused;
   ServiceOptions options;

@@ -1,0 +1,149 @@
+#include "db/backup.hpp"
+
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include "db/lock.hpp"
+#include "db/migrate.hpp"
+#include "db/sqlite.hpp"
+#include "db/store.hpp"
+
+namespace repose::db {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Questions whose every row is something wrong; the sentence ends with the row's first column.
+constexpr std::array<std::pair<const char*, const char*>, 8> invariants{{
+    {"done without a fit: calibration ",
+     "SELECT id FROM calibration WHERE state = 'done' AND fit IS NULL"},
+    {"ended before it began: calibration ",
+     "SELECT id FROM calibration WHERE finished_at < started_at OR started_at < created_at"},
+    {"evaluations missing between those used by calibration ",
+     "SELECT c.id FROM calibration c JOIN calibration_evaluation u ON u.calibration_id = c.id "
+     "WHERE c.state = 'done' GROUP BY c.id HAVING max(u.ordinal) + 1 <> count(*)"},
+    {"done without a result: diagnosis ",
+     "SELECT id FROM diagnosis WHERE state = 'done' AND result IS NULL"},
+    {"done without a result: night ",
+     "SELECT id FROM night WHERE state = 'done' AND result IS NULL"},
+    {"promoted without being done: calibration ",
+     "SELECT c.id FROM promotion p JOIN calibration c ON c.id = p.calibration_id "
+     "WHERE c.state <> 'done'"},
+    {"more than one running night of schedule ",
+     "SELECT schedule_id FROM night WHERE state = 'running' GROUP BY schedule_id "
+     "HAVING count(*) > 1"},
+    {"empty question or answer of evaluation ",
+     "SELECT key FROM evaluation WHERE question = '' OR answer = ''"},
+}};
+
+/// Each row of a check of SQLite's own that is not "ok".
+void check(Connection& connection, const char* pragma, std::vector<std::string>& problems) {
+  Statement row = connection.prepare(std::string("PRAGMA ") + pragma);
+  while (row.step()) {
+    if (row.text(0) != "ok") problems.push_back(std::string(pragma) + ": " + row.text(0));
+  }
+}
+
+std::vector<std::string> damage(Connection& connection) {
+  std::vector<std::string> problems;
+  try {
+    check(connection, "integrity_check", problems);
+    check(connection, "foreign_key_check", problems);
+  } catch (const Error& error) {
+    problems.emplace_back(error.what());  // so damaged that it cannot be checked
+  }
+  return problems;
+}
+
+[[noreturn]] void fail(const std::string& doing, const std::error_code& problem) {
+  throw Error(0, doing + ": " + problem.message());
+}
+
+void move_to(const fs::path& from, const fs::path& to) {
+  std::error_code problem;
+  fs::rename(from, to, problem);
+  if (problem) fail("cannot give " + from.string() + " the name " + to.string(), problem);
+}
+
+/// A whole copy in one file, without a log beside it, that has been checked.
+void copy_checked(const fs::path& from, const fs::path& to) {
+  fs::remove(to);  // left by a copy that was cut off
+  try {
+    Connection source(from, Connection::Mode::read);
+    check_schema(source);
+    Connection target(to, Connection::Mode::write);
+    source.copy_to(target);
+    target.run("PRAGMA journal_mode = DELETE");
+    const auto problems = damage(target);
+    if (!problems.empty()) {
+      throw Error(0, from.string() + " is damaged, and so would be its copy: " + problems.front());
+    }
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(to, ignored);
+    throw;
+  }
+}
+
+fs::path beside(fs::path file, const char* suffix) { return file += suffix; }
+
+/// Where a database that is replaced is kept: the first name that is free.
+fs::path kept_name(const fs::path& database) {
+  for (int number = 1;; ++number) {
+    fs::path name = beside(database, (".replaced-" + std::to_string(number)).c_str());
+    if (!fs::exists(name)) return name;
+  }
+}
+
+}  // namespace
+
+void back_up(const fs::path& database, const fs::path& file) {
+  if (!fs::exists(database)) throw Error(0, "there is no database " + database.string());
+  if (fs::exists(file)) throw Error(0, file.string() + " is there already: choose another name");
+  copy_checked(database, beside(file, ".part"));
+  move_to(beside(file, ".part"), file);
+}
+
+fs::path restore(const fs::path& file, const fs::path& database) {
+  if (!fs::exists(file)) throw Error(0, "there is no backup " + file.string());
+  const FileLock lock(database);
+  copy_checked(file, beside(database, ".part"));
+  fs::path kept;
+  if (fs::exists(database)) {
+    {
+      Connection old(database, Connection::Mode::write);
+      old.run("PRAGMA wal_checkpoint(TRUNCATE)");
+    }
+    kept = kept_name(database);
+    move_to(database, kept);
+    fs::remove(beside(database, "-wal"));
+    fs::remove(beside(database, "-shm"));
+  }
+  move_to(beside(database, ".part"), database);
+  return kept;
+}
+
+std::vector<std::string> examine(const fs::path& database, const Digest& digest) {
+  if (!fs::exists(database)) throw Error(0, "there is no database " + database.string());
+  Connection connection(database, Connection::Mode::read);
+  check_current(connection);
+  std::vector<std::string> problems = damage(connection);
+  if (!problems.empty()) return problems;  // what rows say of each other means nothing then
+  for (const auto& [sentence, question] : invariants) {
+    Statement row = connection.prepare(question);
+    while (row.step()) problems.push_back(sentence + row.text(0));
+  }
+  if (!digest) return problems;
+  Statement row = connection.prepare("SELECT key, engine_version, question FROM evaluation");
+  while (row.step()) {
+    // What follows a slash is not the question's: how the host failed on it.
+    const std::string key = row.text(0).substr(0, row.text(0).find('/'));
+    if (digest(row.text(1) + "\n" + row.text(2)) == key) continue;
+    problems.push_back("key that is not its question's: evaluation " + row.text(0));
+  }
+  return problems;
+}
+
+}  // namespace repose::db

@@ -1,0 +1,208 @@
+#include "server/nightly/nights.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "calibrator/misfit.hpp"
+#include "db/schedule_store.hpp"
+#include "engine/evaluate.hpp"
+#include "engine/random.hpp"
+#include "server/json/calibration_json.hpp"
+#include "server/json/evaluation_json.hpp"
+#include "server/json/schedule_json.hpp"
+#include "server/nightly/conclusion.hpp"
+#include "server/nightly/continuation.hpp"
+
+namespace repose::server {
+
+using calibrator::Calibration;
+using db::NightRecord;
+using db::ScheduleRecord;
+using db::ScheduleStore;
+
+namespace {
+
+constexpr std::int64_t second = 1'000'000;  // microseconds
+constexpr int looked_back = 400;            // nights in which the last ones of a kind are sought
+constexpr std::size_t most_continued = 30;  // searches whose runs are known from the start
+
+std::chrono::sys_seconds instant(std::int64_t microseconds) {
+  return std::chrono::sys_seconds(std::chrono::seconds(microseconds / second));
+}
+
+std::int64_t microseconds_of(std::chrono::sys_seconds time) {
+  return time.time_since_epoch().count() * second;
+}
+
+/// Seeds that no other night has used; 53 bits, so that they survive as a JSON number.
+std::uint64_t seed_of_night(const Calibration& study, std::int64_t planned_at) {
+  const auto night = static_cast<std::uint64_t>(planned_at);
+  return engine::Random(study.seed, engine::Purpose::trial, night).bits() >> 11U;
+}
+
+/// What a study asks, whatever its seed.
+std::string question_of(Calibration study) {
+  study.seed = 0;
+  return print_calibration(study);
+}
+
+/// The calibration that the last night was about: nothing new since then is nothing to do.
+std::optional<std::int64_t> last_worked(const std::vector<NightRecord>& nights) {
+  for (const NightRecord& night : nights) {
+    if (night.state == "done" && night.calibration) return night.calibration;
+  }
+  return std::nullopt;
+}
+
+bool is_unchanged(const db::Store& store, const Calibration& study, std::int64_t before) {
+  const auto record = store.calibration(before);
+  const auto asked = record ? parse_calibration(record->request) : engine::Unexpected{Problems{}};
+  if (!asked || question_of(*asked) != question_of(study)) return false;
+  const auto used = store.used(before, 1, std::nullopt);
+  return !used.empty() && used.front().evaluation.engine_version == engine::version();
+}
+
+/// The searches of the schedule so far, oldest first, the promoted one among them.
+std::vector<std::int64_t> searches(const std::vector<NightRecord>& nights, std::int64_t promoted) {
+  std::vector<std::int64_t> ids;
+  for (const NightRecord& night : nights) {
+    if (ids.size() + 1 >= most_continued) break;
+    const bool searched = night.state == "done" && night.calibration && night.outcome != "kept";
+    if (searched && night.calibration != promoted) ids.push_back(*night.calibration);
+  }
+  ids.push_back(promoted);
+  std::ranges::sort(ids);
+  return ids;
+}
+
+void end(ScheduleStore& schedules,
+         std::int64_t night,
+         db::NightEnd result,
+         const std::string& reason,
+         std::int64_t now) {
+  NightReport report;
+  report.reason = reason;
+  result.result = print_night_report({}, report);
+  schedules.end_night(night, result, now);
+}
+
+/// The night's calibration, queued; or nothing, and the night is over.
+std::optional<std::int64_t> prepare(db::Store& store,
+                                    const ScheduleRecord& record,
+                                    const NightRecord& night,
+                                    std::int64_t now) {
+  ScheduleStore schedules(store);
+  const auto schedule = parse_schedule(record.request);
+  if (!schedule) {
+    end(schedules,
+        night.id,
+        {.state = "failed"},
+        "the schedule cannot be read any more: " + schedule.error().front().message,
+        now);
+    return std::nullopt;
+  }
+  Calibration study = schedule->study;
+  const auto nights = schedules.nights(record.id, looked_back, std::nullopt);
+  const auto promotions = schedules.promotions(record.id);
+  std::optional<std::int64_t> promoted;
+  if (!promotions.empty()) promoted = promotions.front().calibration;
+  const auto before = last_worked(nights) ? last_worked(nights) : promoted;
+  if (before && is_unchanged(store, study, *before)) {
+    end(schedules,
+        night.id,
+        {.state = "done", .outcome = "kept"},
+        "no measurement has changed since calibration " + std::to_string(*before),
+        now);
+    return std::nullopt;
+  }
+  study.seed = seed_of_night(study, night.planned_at);
+  const std::string request = print_calibration(study);
+  const auto queued = store.unfinished(digest(request));
+  const std::int64_t id =
+      queued ? queued->id : store.add_calibration(study.name, request, digest(request), now);
+  std::optional<std::string> continues;
+  if (promoted) continues = print_ids(searches(nights, *promoted));
+  schedules.set_night_calibration(night.id, id, promoted, continues);
+  return id;
+}
+
+/// When a night is planned that is to begin now.
+struct Beginning {
+  std::int64_t planned_at = 0;
+  bool too_late = false;
+};
+
+std::optional<Beginning> beginning(const ScheduleRecord& record,
+                                   std::int64_t last_planned,
+                                   Begin which,
+                                   std::int64_t now) {
+  if (which == Begin::all) return Beginning{now};
+  const auto schedule = parse_schedule(record.request);
+  if (!schedule) return std::nullopt;
+  const std::int64_t since =
+      std::max({record.created_at, record.replaced_at.value_or(0), last_planned});
+  const auto night = due(schedule->timetable, record.id, instant(since), instant(now));
+  if (!night) return std::nullopt;
+  return Beginning{microseconds_of(night->planned), night->too_late};
+}
+
+std::optional<std::int64_t> begin_night(db::Store& store,
+                                        const ScheduleRecord& record,
+                                        Begin which,
+                                        std::int64_t now) {
+  ScheduleStore schedules(store);
+  const auto last = schedules.nights(record.id, 1, std::nullopt);
+  const auto night = beginning(record, last.empty() ? 0 : last.front().planned_at, which, now);
+  if (!night) return std::nullopt;
+  const auto running = schedules.running_nights();
+  const bool overlaps =
+      std::ranges::find(running, record.id, &NightRecord::schedule) != running.end();
+  const auto id = schedules.begin_night(record.id, night->planned_at, now);
+  if (!id) return std::nullopt;  // that night has been
+  if (night->too_late || overlaps) {
+    end(schedules,
+        *id,
+        {.state = "skipped"},
+        overlaps ? "the night before is still running"
+                 : "it was missed, and is too late to catch up",
+        now);
+    return std::nullopt;
+  }
+  return prepare(store, record, *schedules.night(*id), now);
+}
+
+}  // namespace
+
+std::vector<std::int64_t> begin_nights(db::Store& store, Begin which, std::int64_t now) {
+  ScheduleStore schedules(store);
+  std::vector<std::int64_t> calibrations;
+  for (const NightRecord& night : schedules.running_nights()) {
+    if (night.calibration) {
+      calibrations.push_back(*night.calibration);
+    } else if (const auto id = prepare(store, *schedules.schedule(night.schedule), night, now)) {
+      calibrations.push_back(*id);
+    }
+  }
+  for (const ScheduleRecord& record : schedules.schedules()) {
+    if (const auto id = begin_night(store, record, which, now)) calibrations.push_back(*id);
+  }
+  std::erase_if(calibrations,
+                [&](std::int64_t id) { return store.calibration(id)->finished_at.has_value(); });
+  return calibrations;
+}
+
+void end_nights(db::Store& store,
+                const WorkerOptions& options,
+                const std::stop_token& stop,
+                std::int64_t now) {
+  ScheduleStore schedules(store);
+  for (const NightRecord& night : schedules.running_nights()) {
+    if (!night.calibration || !store.calibration(*night.calibration)->finished_at) continue;
+    const auto result = conclude(store, options, night, stop);
+    if (result) schedules.end_night(night.id, *result, now);
+  }
+}
+
+}  // namespace repose::server

@@ -1,0 +1,40 @@
+/// Nights: what a schedule does at its times. A night takes the schedule's study as it is now;
+/// where nothing of it has changed, it is over. Else it holds the promoted fit against it, searches
+/// on where that fails, and publishes what came of it:
+///
+///   first                      there was no fit before
+///   kept                       the promoted fit still holds
+///   moved                      another fits better: promoted by the rule (promotion.hpp), or a
+///                              candidate that waits for a person
+///   model_no_longer_adequate   none fits; a diagnosis says what the model may lack
+///
+/// Every step is a row before the next begins: a night that was cut off is taken up where it was.
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+#include <vector>
+
+#include "db/store.hpp"
+#include "server/jobs/workers.hpp"
+
+namespace repose::server {
+
+/// Which schedules a look at the clock begins.
+enum class Begin : std::uint8_t {
+  due,  ///< those whose time has come
+  all,  ///< every one, as if its time were now
+};
+
+/// Begins nights and takes up those that were cut off; the calibrations that are to be run for
+/// them. `now` is microseconds since 1970 UTC.
+std::vector<std::int64_t> begin_nights(db::Store& store, Begin which, std::int64_t now);
+
+/// Ends the nights whose calibrations have ended. Diagnoses that this starts are run here and now;
+/// a stop leaves the night to the next call.
+void end_nights(db::Store& store,
+                const WorkerOptions& options,
+                const std::stop_token& stop,
+                std::int64_t now);
+
+}  // namespace repose::server

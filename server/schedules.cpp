@@ -1,0 +1,161 @@
+#include "server/schedules.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "db/schedule_store.hpp"
+#include "server/json/schedule_json.hpp"
+#include "server/nightly/continuation.hpp"
+
+namespace repose::server {
+
+using db::ScheduleStore;
+using engine::Unexpected;
+
+namespace {
+
+constexpr std::int64_t second = 1'000'000;  // microseconds
+
+Refusal not_found(std::int64_t id) {
+  return {Refusal::Kind::not_found, "there is no schedule " + std::to_string(id), {}};
+}
+
+Refusal invalid(const char* what, Problems problems) {
+  const std::string count = std::to_string(problems.size());
+  return {Refusal::Kind::invalid,
+          std::string(what) + " has " + count + (count == "1" ? " problem" : " problems"),
+          std::move(problems)};
+}
+
+/// The schedule, and that the calibration to start from is one that can be.
+Answer<Schedule> read(const db::Store& store, std::string_view document) {
+  auto schedule = parse_schedule(document);
+  if (!schedule) return Unexpected{invalid("the schedule", schedule.error())};
+  if (!schedule->start_from) return *std::move(schedule);
+  const std::string found = std::to_string(*schedule->start_from);
+  if (!published(store, *schedule->start_from)) {
+    return Unexpected{invalid("the schedule",
+                              {{"/start_from",
+                                "there is no finished calibration " + found,
+                                found,
+                                "the number of a calibration that is done"}})};
+  }
+  return *std::move(schedule);
+}
+
+std::optional<std::int64_t> next_at(const db::ScheduleRecord& record, std::int64_t now) {
+  if (record.removed_at) return std::nullopt;
+  const auto schedule = parse_schedule(record.request);
+  if (!schedule) return std::nullopt;
+  const auto next =
+      next_after(schedule->timetable, std::chrono::sys_seconds(std::chrono::seconds(now / second)));
+  if (!next) return std::nullopt;
+  return next->time_since_epoch().count() * second;
+}
+
+ScheduleStanding standing(db::Store& store, const db::ScheduleRecord& record, std::int64_t now) {
+  const ScheduleStore schedules(store);
+  ScheduleStanding result{record, next_at(record, now), {}, {}, {}};
+  const auto promotions = schedules.promotions(record.id);
+  if (!promotions.empty()) {
+    result.promoted = promotions.front();
+    result.fit = store.calibration(promotions.front().calibration);
+  }
+  const auto nights = schedules.nights(record.id, 1, std::nullopt);
+  if (!nights.empty()) result.last = nights.front();
+  return result;
+}
+
+/// Whether the calibration is one of the schedule's: a night's, or one promoted before.
+bool belongs(const ScheduleStore& schedules, std::int64_t schedule, std::int64_t calibration) {
+  const auto promotions = schedules.promotions(schedule);
+  if (std::ranges::find(promotions, calibration, &db::PromotionRecord::calibration) !=
+      promotions.end()) {
+    return true;
+  }
+  const auto night = schedules.night_of(calibration);
+  return night && night->schedule == schedule;
+}
+
+}  // namespace
+
+Answer<std::string> add_schedule(db::Store& store, std::string_view document, std::int64_t now) {
+  const auto read_one = read(store, document);
+  if (!read_one) return Unexpected{read_one.error()};
+  ScheduleStore schedules(store);
+  const std::int64_t id = schedules.add(read_one->name, print_schedule(*read_one), now);
+  if (read_one->start_from) {
+    schedules.promote(id, *read_one->start_from, "the schedule starts from it", now);
+  }
+  return schedule(store, id, now);
+}
+
+Answer<std::string> replace_schedule(db::Store& store,
+                                     std::int64_t id,
+                                     std::string_view document,
+                                     std::int64_t now) {
+  const auto read_one = read(store, document);
+  if (!read_one) return Unexpected{read_one.error()};
+  if (!ScheduleStore(store).replace(id, read_one->name, print_schedule(*read_one), now)) {
+    return Unexpected{not_found(id)};
+  }
+  return schedule(store, id, now);
+}
+
+Answer<std::string> remove_schedule(db::Store& store, std::int64_t id, std::int64_t now) {
+  if (!ScheduleStore(store).remove(id, now)) return Unexpected{not_found(id)};
+  return schedule(store, id, now);
+}
+
+Answer<std::string> schedule(db::Store& store, std::int64_t id, std::int64_t now) {
+  const auto record = ScheduleStore(store).schedule(id);
+  if (!record) return Unexpected{not_found(id)};
+  return print_standing(standing(store, *record, now), true);
+}
+
+std::string schedules(db::Store& store, std::int64_t now) {
+  std::vector<ScheduleStanding> standings;
+  for (const db::ScheduleRecord& record : ScheduleStore(store).schedules()) {
+    standings.push_back(standing(store, record, now));
+  }
+  return print_standings(standings);
+}
+
+Answer<std::string> nights(db::Store& store,
+                           std::int64_t id,
+                           int limit,
+                           std::optional<std::int64_t> before) {
+  const ScheduleStore schedules(store);
+  if (!schedules.schedule(id)) return Unexpected{not_found(id)};
+  return print_nights(schedules.nights(id, limit, before), limit);
+}
+
+Answer<std::string> promotions(db::Store& store, std::int64_t id) {
+  const ScheduleStore schedules(store);
+  if (!schedules.schedule(id)) return Unexpected{not_found(id)};
+  return print_promotions(schedules.promotions(id));
+}
+
+Answer<std::string> promote(db::Store& store,
+                            std::int64_t id,
+                            std::string_view document,
+                            std::int64_t now) {
+  ScheduleStore schedules(store);
+  if (!schedules.schedule(id)) return Unexpected{not_found(id)};
+  const auto calibration = parse_promotion_request(document);
+  if (!calibration) return Unexpected{invalid("the promotion", calibration.error())};
+  const std::string name = "calibration " + std::to_string(*calibration);
+  if (!belongs(schedules, id, *calibration)) {
+    return Unexpected{Refusal{Refusal::Kind::wrong_state,
+                              name + " is none of the schedule's: its nights and promotions name "
+                                     "those that can be put in force",
+                              {}}};
+  }
+  if (!published(store, *calibration)) {
+    return Unexpected{Refusal{Refusal::Kind::wrong_state, name + " has no fit", {}}};
+  }
+  schedules.promote(id, *calibration, "put in force by hand", now);
+  return schedule(store, id, now);
+}
+
+}  // namespace repose::server

@@ -1,0 +1,90 @@
+// A user's nights from the command line: schedule, run, look back, go back; export, back up,
+// restore.
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/temporary_folder.hpp"
+
+using Catch::Contains;
+using Json = nlohmann::json;
+using repose::tests::TemporaryFolder;
+
+namespace {
+
+/// Runs the program through the shell; its output, and its exit code at the end.
+std::string run(const std::string& arguments, int wanted = 0) {
+  const std::string command = "'" REPOSE_PROGRAM "' " + arguments + " 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  REQUIRE(pipe != nullptr);
+  std::array<char, 4096> buffer{};
+  std::string output;
+  for (std::size_t count = 0; (count = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+    output.append(buffer.data(), count);
+  }
+  const int status = pclose(pipe);
+  INFO(arguments << "\n" << output);
+  REQUIRE(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == wanted);
+  return output;
+}
+
+std::string study(const TemporaryFolder& folder, double restitution) {
+  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
+  Json document = Json::parse(file);
+  document["measurements"][0]["value"] = restitution;
+  const auto path = folder / "study.json";
+  std::ofstream(path) << document;
+  return path.string();
+}
+
+}  // namespace
+
+TEST_CASE("nights are scheduled, run, looked up and undone from the command line", "[end_to_end]") {
+  const TemporaryFolder folder;
+  const std::string db = " --db " + (folder / "a.db").string();
+  const std::string night = "nightly --once --all" + db;
+  CHECK_THAT(
+      run("schedule add " + study(folder, 0.6) + " --cron '0 25 * * *' --time-zone Mars" + db, 2),
+      Contains("/cron") && Contains("/time_zone"));
+  CHECK_THAT(run("schedule add " + study(folder, 0.6) + " --time-zone Europe/Berlin" + db),
+             Contains("30 2 * * * in Europe/Berlin") && Contains("no fit yet"));
+  CHECK_THAT(run(night), Contains("first"));
+  CHECK_THAT(
+      run("schedule show 1" + db),
+      Contains("in force    calibration 1") && Contains("restitution.coefficient:grain-wall"));
+
+  run("schedule add --replace 1 " + study(folder, 0.7) + " --time-zone Europe/Berlin" + db);
+  CHECK_THAT(run(night), Contains("moved"));
+  const Json history = Json::parse(run("schedule history 1 --json" + db));
+  REQUIRE(history["items"].size() == 2);
+  CHECK(history["items"][0]["outcome"] == "moved");
+  CHECK(history["items"][0]["result"]["promoted"] == true);
+  CHECK_THAT(run("schedule promote 1 1" + db), Contains("calibration 1 since"));
+  CHECK_THAT(run("schedule promote 1 9" + db, 2), Contains("none of the schedule's"));
+
+  CHECK_THAT(run("schedule remove 1" + db), Contains("removed"));
+  run(night);
+  CHECK(Json::parse(run("schedule history 1 --json" + db))["items"].size() == 2);
+}
+
+TEST_CASE("a fit is exported, and the database backed up, examined and restored", "[end_to_end]") {
+  const TemporaryFolder folder;
+  const std::string db = " --db " + (folder / "a.db").string();
+  const std::string copy = (folder / "copy.db").string();
+  run("calibrate " + study(folder, 0.6) + db + " --no-pictures --report " +
+      (folder / "report.html").string());
+  CHECK_THAT(run("export 1 --format liggghts" + db), Contains("pair_style gran model hertz"));
+  CHECK(Json::parse(run("export 1" + db))["fit"]["parameters"].size() == 1);
+  CHECK_THAT(run("export 2 --format csv" + db, 2), Contains("no calibration 2"));
+  CHECK_THAT(run("backup " + copy + db), Contains("copy.db"));
+  CHECK_THAT(run("doctor" + db), Contains("is sound"));
+  CHECK_THAT(run("restore " + copy + db), Contains(".replaced-1"));
+  CHECK_THAT(run("show 1" + db), Contains("restitution"));
+  CHECK_THAT(run("backup " + copy + db, 2), Contains("there already"));
+}

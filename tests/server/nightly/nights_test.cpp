@@ -1,0 +1,257 @@
+// Night after night with a clock that the test turns: the drop experiment stands for the plant.
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <iomanip>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "db/schedule_store.hpp"
+#include "engine/random.hpp"
+#include "server/json/text.hpp"
+#include "server/nightly/time_zone.hpp"
+#include "server/service.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace repose::server;
+using namespace std::chrono;
+using namespace std::chrono_literals;
+using repose::tests::TemporaryFolder;
+
+namespace {
+
+Json drop_study(double restitution, double standard_error = 0.02) {
+  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
+  Json study = Json::parse(file);
+  study["measurements"][0]["value"] = restitution;
+  study["measurements"][0]["standard_error"] = standard_error;
+  return study;
+}
+
+Json schedule_of(Json study) {
+  return {{"name", "drop, nightly"},
+          {"cron", "30 2 * * *"},
+          {"time_zone", "Europe/Berlin"},
+          {"study", std::move(study)}};
+}
+
+/// A service whose clock stands where the test puts it.
+class Plant {
+ public:
+  Plant() : service_(options()) {}
+
+  Json add(double restitution) {
+    const auto answer = service_.add_schedule(to_text(schedule_of(drop_study(restitution))));
+    REQUIRE(answer);
+    return Json::parse(*answer);
+  }
+  void measure(double restitution, double standard_error = 0.02) {
+    const Json document = schedule_of(drop_study(restitution, standard_error));
+    REQUIRE(service_.replace_schedule(1, to_text(document)));
+  }
+  void run(const std::stop_token& stop = {}, const CalibrationEvents& events = {}) {
+    service_.run_nights(false, stop, events);
+  }
+  Json history() { return Json::parse(*service_.nights(1, 10000, std::nullopt))["items"]; }
+  Json last() { return history().at(0); }
+  Json standing() { return Json::parse(*service_.schedule(1)); }
+  Service& service() { return service_; }
+
+  sys_seconds now = sys_days(2026y / March / 1d) + 12h;
+
+ private:
+  ServiceOptions options() {
+    ServiceOptions result;
+    result.database = folder_ / "a.db";
+    result.workers = 1;
+    result.clock = [this] { return now.time_since_epoch().count() * 1'000'000; };
+    return result;
+  }
+  TemporaryFolder folder_{TemporaryFolder::fast()};
+  Service service_;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "the first night fits, a night without news is kept, a small change is kept, a large one "
+    "moves the fit",
+    "[server]") {
+  Plant plant;
+  CHECK(plant.add(0.6)["next_at"] == "2026-03-02T01:30:00.000000Z");
+  plant.run();
+  CHECK(plant.history().empty());  // not yet
+  plant.now += 24h;
+  plant.run();
+  CHECK(plant.last()["outcome"] == "first");
+  CHECK(plant.standing()["promoted"]["calibration"] == 1);
+  CHECK(plant.standing()["fit"]["parameters"].size() == 1);
+
+  plant.now += 24h;
+  plant.run();
+  CHECK(plant.last()["outcome"] == "kept");
+  CHECK(plant.last()["calibration"].is_null());
+
+  plant.measure(0.605);
+  plant.now += 24h;
+  plant.run();
+  CHECK(plant.last()["outcome"] == "kept");
+  CHECK(plant.last()["calibration"] == 2);
+  CHECK(plant.last()["result"]["incumbent_held"] == true);
+  CHECK(plant.last()["result"]["changed"][0]["before"] == 0.6);
+  CHECK(plant.standing()["promoted"]["calibration"] == 1);
+
+  plant.measure(0.7);
+  plant.now += 24h;
+  plant.run();
+  CHECK(plant.last()["outcome"] == "moved");
+  CHECK(plant.last()["result"]["incumbent_held"] == false);
+  CHECK(plant.last()["result"]["promoted"] == true);
+  CHECK(plant.standing()["promoted"]["calibration"] == 3);
+  const double fitted = plant.standing()["fit"]["parameters"][0]["value"].get<double>();
+  CHECK(fitted == Approx(0.7).margin(0.03));
+}
+
+TEST_CASE("a measurement that no parameter can meet is a model that is no longer adequate",
+          "[server]") {
+  Plant plant;
+  plant.add(0.6);
+  plant.now += 24h;
+  plant.run();
+  plant.measure(0.1, 0.005);  // the search ends at 0.3
+  plant.now += 24h;
+  plant.run();
+  CHECK(plant.last()["outcome"] == "model_no_longer_adequate");
+  CHECK(plant.last()["result"]["promoted"] == false);
+  CHECK(plant.standing()["promoted"]["calibration"] == 1);
+  // One measurement and one parameter are too little for a diagnosis, and the night says so.
+  CHECK_THAT(plant.last()["result"]["reason"].get<std::string>(),
+             Catch::Contains("no diagnosis") && Catch::Contains("cannot be tested"));
+}
+
+TEST_CASE("a fit that was in force is put in force again by hand, another one is not", "[server]") {
+  Plant plant;
+  plant.add(0.6);
+  plant.now += 24h;
+  plant.run();
+  plant.measure(0.7);
+  plant.now += 24h;
+  plant.run();
+  REQUIRE(plant.standing()["promoted"]["calibration"] == 2);
+  REQUIRE(plant.service().promote(1, R"({"calibration": 1})"));
+  CHECK(plant.standing()["promoted"]["calibration"] == 1);
+  CHECK(Json::parse(*plant.service().promotions(1))["items"].size() == 3);
+  const auto strange = plant.service().promote(1, R"({"calibration": 77})");
+  REQUIRE_FALSE(strange);
+  CHECK(strange.error().kind == Refusal::Kind::wrong_state);
+  CHECK(plant.service().promote(1, "{}").error().kind == Refusal::Kind::invalid);
+  // The next night holds the fit in force against the measurements: it does not hold.
+  plant.measure(0.71);
+  plant.now += 24h;
+  plant.run();
+  CHECK(plant.last()["incumbent"] == 1);
+  CHECK(plant.last()["outcome"] == "moved");
+}
+
+TEST_CASE("a night that was cut off is taken up where it was", "[server]") {
+  Plant plant;
+  plant.add(0.6);
+  plant.now += 24h;
+  std::stop_source source;
+  CalibrationEvents events;
+  events.trial = [&](std::size_t, std::size_t, bool) { source.request_stop(); };
+  plant.run(source.get_token(), events);
+  CHECK(plant.last()["state"] == "running");
+  plant.run();
+  CHECK(plant.history().size() == 1);
+  CHECK(plant.last()["outcome"] == "first");
+  CHECK(plant.last()["calibration"] == 1);
+}
+
+TEST_CASE("a night that comes while the last one runs is skipped, and so is one that is too late",
+          "[server]") {
+  Plant plant;
+  plant.add(0.6);
+  plant.now += 24h;
+  std::stop_source source;
+  CalibrationEvents events;
+  events.trial = [&](std::size_t, std::size_t, bool) { source.request_stop(); };
+  plant.run(source.get_token(), events);
+  plant.now += 24h;
+  plant.run(source.get_token(), events);
+  CHECK(plant.last()["state"] == "skipped");
+  CHECK_THAT(plant.last()["result"]["reason"].get<std::string>(), Catch::Contains("still running"));
+  plant.run();
+  plant.now += 96h + 6h;  // 18:00
+  plant.run();
+  CHECK(plant.history().size() == 3);
+  CHECK(plant.last()["planned_at"] == "2026-03-07T01:30:00.000000Z");
+  CHECK_THAT(plant.last()["result"]["reason"].get<std::string>(), Catch::Contains("too late"));
+}
+
+TEST_CASE("a removed schedule begins no more nights, and its history stays", "[server]") {
+  Plant plant;
+  plant.add(0.6);
+  plant.now += 24h;
+  plant.run();
+  REQUIRE(plant.service().remove_schedule(1));
+  plant.now += 24h;
+  plant.run();
+  CHECK(plant.history().size() == 1);
+  CHECK(plant.standing()["next_at"].is_null());
+  CHECK_FALSE(plant.service().remove_schedule(1));
+  CHECK(Json::parse(plant.service().schedules())["items"].empty());
+}
+
+TEST_CASE(
+    "four hundred nights over three clock changes: one a date, the shift found, nothing "
+    "alarmed before it",
+    "[server][slow]") {
+  constexpr int nights = 400;
+  constexpr int shifted_from = 250;
+  Plant plant;
+  plant.add(0.6);
+  const auto zone = *TimeZone::find("Europe/Berlin");
+  repose::engine::Random random(5, repose::engine::Purpose::trial);
+  for (int night = 0; night < nights; ++night) {
+    const double truth = night < shifted_from ? 0.6 : 0.56;
+    plant.measure(truth + 0.02 * random.normal());
+    // Four looks at the clock a day; every 40 nights the machine is off until the next noon.
+    const bool off = night % 40 == 39;
+    for (int look = 0; look < 4; ++look) {
+      plant.now += 6h;
+      if (!off || look == 3) plant.run();
+    }
+  }
+  std::set<local_days> dates;
+  int alarms_before = 0, first_alarm = nights;
+  std::map<std::string, int> outcomes;
+  const Json history = plant.history();
+  REQUIRE(history.size() == nights);
+  for (int night = 0; night < nights; ++night) {
+    const Json& row = history[static_cast<std::size_t>(nights - 1 - night)];
+    CHECK(row["state"] == "done");
+    ++outcomes[row["outcome"].get<std::string>()];
+    std::istringstream text(row["planned_at"].get<std::string>().substr(0, 19));
+    std::tm utc{};
+    text >> std::get_time(&utc, "%Y-%m-%dT%H:%M:%S");
+    const local_seconds local = zone.local(sys_seconds(seconds(timegm(&utc))));
+    dates.insert(floor<days>(local));
+    const auto time = local - floor<days>(local);
+    CHECK((time == 2h + 30min || time == 3h));  // 3:00 where 2:30 is skipped
+    if (row["result"]["alarms"].empty()) continue;
+    if (night < shifted_from) ++alarms_before;
+    if (night >= shifted_from) first_alarm = std::min(first_alarm, night);
+  }
+  CHECK(dates.size() == nights);
+  CHECK(alarms_before == 0);                // stated: one in a thousand nights
+  CHECK(first_alarm - shifted_from <= 14);  // two standard errors
+  CHECK(outcomes["first"] == 1);
+  CHECK(outcomes["kept"] > nights / 2);
+  CHECK(outcomes["moved"] > 0);
+  CHECK(outcomes.size() == 3);
+}
