@@ -6,6 +6,7 @@
 #include "db/schedule_store.hpp"
 #include "server/json/schedule_json.hpp"
 #include "server/nightly/continuation.hpp"
+#include "server/nightly/nights.hpp"
 
 namespace repose::server {
 
@@ -28,8 +29,8 @@ Refusal invalid(const char* what, Problems problems) {
 }
 
 /// The schedule, and that the calibration to start from is one that can be.
-Answer<Schedule> read(const db::Store& store, std::string_view document) {
-  auto schedule = parse_schedule(document);
+Answer<Schedule> read(db::Store& store, std::string_view document) {
+  auto schedule = read_schedule(store, document);
   if (!schedule) return Unexpected{invalid("the schedule", schedule.error())};
   if (!schedule->start_from) return *std::move(schedule);
   const std::string found = std::to_string(*schedule->start_from);
@@ -43,9 +44,11 @@ Answer<Schedule> read(const db::Store& store, std::string_view document) {
   return *std::move(schedule);
 }
 
-std::optional<std::int64_t> next_at(const db::ScheduleRecord& record, std::int64_t now) {
+std::optional<std::int64_t> next_at(db::Store& store,
+                                    const db::ScheduleRecord& record,
+                                    std::int64_t now) {
   if (record.removed_at) return std::nullopt;
-  const auto schedule = parse_schedule(record.request);
+  const auto schedule = read_schedule(store, record.request);
   if (!schedule) return std::nullopt;
   const auto next =
       next_after(schedule->timetable, std::chrono::sys_seconds(std::chrono::seconds(now / second)));
@@ -55,7 +58,7 @@ std::optional<std::int64_t> next_at(const db::ScheduleRecord& record, std::int64
 
 ScheduleStanding standing(db::Store& store, const db::ScheduleRecord& record, std::int64_t now) {
   const ScheduleStore schedules(store);
-  ScheduleStanding result{record, next_at(record, now), {}, {}, {}};
+  ScheduleStanding result{record, next_at(store, record, now), {}, {}, {}};
   const auto promotions = schedules.promotions(record.id);
   if (!promotions.empty()) {
     result.promoted = promotions.front();

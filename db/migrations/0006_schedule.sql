@@ -50,3 +50,26 @@ CREATE TRIGGER promotion_final BEFORE UPDATE ON promotion
 BEGIN
   SELECT RAISE(ABORT, 'a promotion does not change');
 END;
+
+-- What nights come to is told to those who follow events; so is a quantity that drifts.
+CREATE TRIGGER night_ends AFTER UPDATE OF state ON night
+WHEN new.state <> old.state
+BEGIN
+  INSERT INTO event (kind, calibration_id, diagnosis_id, detail)
+  VALUES ('night.' || coalesce(new.outcome, new.state), new.calibration_id, new.diagnosis_id,
+          new.result);
+END;
+
+CREATE TRIGGER night_alarms AFTER UPDATE OF state ON night
+WHEN new.state <> old.state AND instr(new.result, '"alarms":[') > 0
+  AND instr(new.result, '"alarms":[]') = 0
+BEGIN
+  INSERT INTO event (kind, calibration_id, detail)
+  VALUES ('night.drift', new.calibration_id, new.result);
+END;
+
+CREATE TRIGGER promotion_begins AFTER INSERT ON promotion
+BEGIN
+  INSERT INTO event (kind, calibration_id, detail)
+  VALUES ('promotion', new.calibration_id, '{"schedule":' || new.schedule_id || '}');
+END;

@@ -48,9 +48,11 @@ void read_timetable(Members& members, Schedule& schedule) {
 }
 
 /// The study that stands there, its problems where they stand in the whole document.
-void read_study(const Place& place, Schedule& schedule) {
+void read_study(const Place& place, const Resolve& resolve, Schedule& schedule) {
   if (!place.exists()) return;
-  auto study = parse_calibration(to_text(place.json()));
+  schedule.submission = to_text(place.json());
+  const auto resolved = resolve(schedule.submission);
+  auto study = resolved ? parse_calibration(*resolved) : engine::Unexpected{resolved.error()};
   if (study) {
     schedule.study = *std::move(study);
     if (schedule.study.extends) {
@@ -124,7 +126,7 @@ Json standing_json(const ScheduleStanding& standing, bool whole) {
 
 }  // namespace
 
-engine::Result<Schedule, Problems> parse_schedule(std::string_view text) {
+engine::Result<Schedule, Problems> parse_schedule(std::string_view text, const Resolve& resolve) {
   ProblemList problems;
   const auto json = parse_text(text, {}, problems);
   if (!json) return engine::Unexpected{problems.all()};
@@ -143,7 +145,7 @@ engine::Result<Schedule, Problems> parse_schedule(std::string_view text) {
   read_timetable(members, schedule);
   const Place start_from = members.optional("start_from");
   if (start_from.exists()) schedule.start_from = start_from.whole(1, largest_id);
-  read_study(members.required("study", "a study document"), schedule);
+  read_study(members.required("study", "a study document"), resolve, schedule);
   members.no_others();
   if (!problems.empty()) return engine::Unexpected{problems.all()};
   return schedule;
@@ -158,7 +160,7 @@ std::string print_schedule(const Schedule& schedule) {
             {"catch_up_hours",
              std::chrono::duration_cast<std::chrono::hours>(schedule.timetable.catch_up).count()}};
   if (schedule.start_from) json["start_from"] = *schedule.start_from;
-  json["study"] = Json::parse(print_calibration(schedule.study));
+  json["study"] = Json::parse(schedule.submission);
   return to_text(json);
 }
 

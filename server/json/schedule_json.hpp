@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,13 +24,17 @@ struct Schedule {
   std::string cron = {};
   Timetable timetable;
   std::optional<std::int64_t> start_from = {};
-  calibrator::Calibration study = {};
+  std::string submission = {};         ///< the study as it was sent: it may name a measurement set
+  calibrator::Calibration study = {};  ///< with the measurements of that set, as it is now
 };
 
-/// All problems of the text at once, or the schedule.
-engine::Result<Schedule, Problems> parse_schedule(std::string_view text);
+/// Puts the measurements in the place of a set's name.
+using Resolve = std::function<engine::Result<std::string, Problems>(std::string_view submission)>;
 
-/// The canonical document.
+/// All problems of the text at once, or the schedule.
+engine::Result<Schedule, Problems> parse_schedule(std::string_view text, const Resolve& resolve);
+
+/// The document that reads back as this schedule.
 std::string print_schedule(const Schedule& schedule);
 
 /// A quantity that is followed from night to night.

@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "calibrator/misfit.hpp"
+#include "db/measurement_store.hpp"
 #include "db/schedule_store.hpp"
 #include "engine/evaluate.hpp"
 #include "engine/random.hpp"
 #include "server/json/calibration_json.hpp"
 #include "server/json/evaluation_json.hpp"
 #include "server/json/schedule_json.hpp"
+#include "server/measurements.hpp"
 #include "server/nightly/conclusion.hpp"
 #include "server/nightly/continuation.hpp"
 
@@ -88,13 +90,19 @@ void end(ScheduleStore& schedules,
   schedules.end_night(night, result, now);
 }
 
+/// Where the measurements are from, so that the fit is found by its material.
+db::SourceRecord source_of(db::Store& store, const Schedule& schedule) {
+  const auto submission = resolve_submission(store, schedule.submission);
+  return submission ? submission->source : db::SourceRecord{};
+}
+
 /// The night's calibration, queued; or nothing, and the night is over.
 std::optional<std::int64_t> prepare(db::Store& store,
                                     const ScheduleRecord& record,
                                     const NightRecord& night,
                                     std::int64_t now) {
   ScheduleStore schedules(store);
-  const auto schedule = parse_schedule(record.request);
+  const auto schedule = read_schedule(store, record.request);
   if (!schedule) {
     end(schedules,
         night.id,
@@ -121,7 +129,9 @@ std::optional<std::int64_t> prepare(db::Store& store,
   const std::string request = print_calibration(study);
   const auto queued = store.unfinished(digest(request));
   const std::int64_t id =
-      queued ? queued->id : store.add_calibration(study.name, request, digest(request), now);
+      queued ? queued->id
+             : db::MeasurementStore(store).add_calibration(
+                   study.name, request, digest(request), source_of(store, *schedule), now);
   std::optional<std::string> continues;
   if (promoted) continues = print_ids(searches(nights, *promoted));
   schedules.set_night_calibration(night.id, id, promoted, continues);
@@ -134,12 +144,13 @@ struct Beginning {
   bool too_late = false;
 };
 
-std::optional<Beginning> beginning(const ScheduleRecord& record,
+std::optional<Beginning> beginning(db::Store& store,
+                                   const ScheduleRecord& record,
                                    std::int64_t last_planned,
                                    Begin which,
                                    std::int64_t now) {
   if (which == Begin::all) return Beginning{now};
-  const auto schedule = parse_schedule(record.request);
+  const auto schedule = read_schedule(store, record.request);
   if (!schedule) return std::nullopt;
   const std::int64_t since =
       std::max({record.created_at, record.replaced_at.value_or(0), last_planned});
@@ -154,7 +165,8 @@ std::optional<std::int64_t> begin_night(db::Store& store,
                                         std::int64_t now) {
   ScheduleStore schedules(store);
   const auto last = schedules.nights(record.id, 1, std::nullopt);
-  const auto night = beginning(record, last.empty() ? 0 : last.front().planned_at, which, now);
+  const auto night =
+      beginning(store, record, last.empty() ? 0 : last.front().planned_at, which, now);
   if (!night) return std::nullopt;
   const auto running = schedules.running_nights();
   const bool overlaps =
@@ -174,6 +186,15 @@ std::optional<std::int64_t> begin_night(db::Store& store,
 }
 
 }  // namespace
+
+engine::Result<Schedule, Problems> read_schedule(db::Store& store, std::string_view document) {
+  return parse_schedule(document,
+                        [&](std::string_view text) -> engine::Result<std::string, Problems> {
+                          auto submission = resolve_submission(store, text);
+                          if (submission) return submission->study;
+                          return engine::Unexpected{submission.error().problems};
+                        });
+}
 
 std::vector<std::int64_t> begin_nights(db::Store& store, Begin which, std::int64_t now) {
   ScheduleStore schedules(store);

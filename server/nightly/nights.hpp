@@ -13,10 +13,12 @@
 
 #include <cstdint>
 #include <stop_token>
+#include <string_view>
 #include <vector>
 
 #include "db/store.hpp"
 #include "server/jobs/workers.hpp"
+#include "server/json/schedule_json.hpp"
 
 namespace repose::server {
 
@@ -25,6 +27,9 @@ enum class Begin : std::uint8_t {
   due,  ///< those whose time has come
   all,  ///< every one, as if its time were now
 };
+
+/// A schedule's document, with the measurements that are kept now where it names a set of them.
+engine::Result<Schedule, Problems> read_schedule(db::Store& store, std::string_view document);
 
 /// Begins nights and takes up those that were cut off; the calibrations that are to be run for
 /// them. `now` is microseconds since 1970 UTC.

@@ -7,6 +7,8 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -155,6 +157,43 @@ TEST_CASE("a fit that was in force is put in force again by hand, another one is
   plant.run();
   CHECK(plant.last()["incumbent"] == 1);
   CHECK(plant.last()["outcome"] == "moved");
+}
+
+TEST_CASE("a night takes the measurements of a set as they are that night, and tells what it did",
+          "[server]") {
+  Plant plant;
+  const auto put = [&](const char* value) {
+    const Json set{{"material", "soybean"},
+                   {"measurements",
+                    {{{"experiment", "drop"},
+                      {"observable", "restitution"},
+                      {"value", std::stod(value)},
+                      {"unit", "1"},
+                      {"standard_error", 0.02}}}}};
+    REQUIRE(plant.service().put_measurement_set("plant", to_text(set), std::nullopt));
+  };
+  put("0.6");
+  Json study = drop_study(0.6);
+  study.erase("measurements");
+  study["measurement_set"] = {{"name", "plant"}};
+  REQUIRE(plant.service().add_schedule(to_text(schedule_of(study))));
+  for (const auto& [value, outcome] :
+       {std::pair{"0.6", "first"}, std::pair{"0.6", "kept"}, std::pair{"0.7", "moved"}}) {
+    put(value);
+    plant.now += 24h;
+    plant.run();
+    CHECK(plant.last()["outcome"] == outcome);
+  }
+  study["measurement_set"] = {{"name", "another"}};
+  CHECK(plant.service().add_schedule(to_text(schedule_of(study))).error().problems[0].pointer ==
+        "/study/measurement_set");
+  std::vector<std::string> kinds;
+  for (const Json& event : Json::parse(*plant.service().events(std::nullopt, 200, 0))["items"]) {
+    const auto kind = event["kind"].get<std::string>();
+    if (kind.starts_with("night") || kind == "promotion") kinds.push_back(kind);
+  }
+  CHECK(kinds == std::vector<std::string>{
+                     "night.first", "promotion", "night.kept", "night.moved", "promotion"});
 }
 
 TEST_CASE("a night that was cut off is taken up where it was", "[server]") {
