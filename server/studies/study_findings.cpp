@@ -27,6 +27,7 @@ std::string offset_sentence(const StudyResult& result, const StudyExperiment& wh
     differences.values.push_back(ours - printed->second.mean);
   }
   const double mean = differences.mean();
+  if (std::isnan(mean)) return "No run of " + what.experiment + " is done.";
   return "Over " + std::to_string(differences.values.size()) + " runs our " +
          observable_text(what) + " is " + with_unit(std::abs(mean), 1, what) +
          (mean < 0.0 ? " below" : " above") +
@@ -78,11 +79,46 @@ std::string cost_sentence(const StudyResult& result) {
          number_text(1e-6 * theirs, 3) + " million (ratio " + number_text(ours / theirs, 3) + ").";
 }
 
+/// Which open question explains how much of the gap: of each kind the variant that closes most.
+std::string shares_text(const StudyResult& result, const StudyExperiment& what) {
+  struct Share {
+    const StudyVariant* variant;
+    Explained explained;
+  };
+  std::vector<Share> most;  // one of a kind
+  for (const StudyVariant& variant : result.study->variants) {
+    const auto explained = explain(result, variant.variant, what);
+    if (!explained || std::isnan(explained->share) || variant.kind == "all") continue;
+    const auto same = [&](const Share& share) { return share.variant->kind == variant.kind; };
+    const auto known = std::ranges::find_if(most, same);
+    if (known == most.end()) {
+      most.push_back({&variant, *explained});
+    } else if (explained->share > known->explained.share) {
+      *known = {&variant, *explained};
+    }
+  }
+  if (most.empty()) return {};
+  const auto share = [](const Share& each) { return -each.explained.share; };
+  std::ranges::sort(most, {}, share);
+  std::string text;
+  for (const Share& each : most) {
+    text += (text.empty() ? " Of this gap, one change at a time: " : "; ") + each.variant->kind +
+            " (" + each.variant->variant + ") " + fixed_text(100.0 * each.explained.share, 0) +
+            " %";
+    if (std::abs(each.explained.change) < 2.0 * each.explained.error) {
+      text += ", within its scatter";
+    }
+  }
+  return text + ".";
+}
+
 std::string gap_sentence(const StudyResult& result, const StudyExperiment& what) {
   const double printed = result.study->run(result.study->base).printed.at(what.experiment).mean;
   const double ours = result.sample(result.study->base, what.experiment).mean();
+  if (std::isnan(ours)) return "The base run of " + what.experiment + " is not done.";
   std::string text = "The base run: " + observable_text(what) + " " + with_unit(ours, 1, what) +
                      " here, " + with_unit(printed, 1, what) + " in the paper.";
+  text += shares_text(result, what);
   const StudyVariant& last = result.study->variants.back();
   const auto all = explain(result, last.variant, what);
   if (!all || std::isnan(all->left)) return text;

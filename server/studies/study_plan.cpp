@@ -1,9 +1,11 @@
 #include "server/studies/study_plan.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "engine/catalogue.hpp"
+#include "engine/size_population.hpp"
 #include "engine/unit.hpp"
 #include "server/cli/assignment.hpp"
 #include "server/json/calibration_json.hpp"
@@ -92,6 +94,15 @@ std::vector<engine::Trial> replicate_trials(const engine::ParameterSet& paramete
     trials.push_back({parameters, experiment, first_seed + static_cast<std::uint64_t>(i)});
   }
   return trials;
+}
+
+double expected_cost(const engine::ParameterSet& parameters) {
+  const auto of_grain = [&](std::string_view field, double otherwise) {
+    return parameters.get_or(engine::make_key(field, {engine::MaterialId::grain}), otherwise);
+  };
+  const double smallest = std::cbrt(engine::size_population(parameters).smallest);
+  return of_grain("grain_shape.members", 1.0) * std::sqrt(of_grain("material.shear_modulus", 1.0)) /
+         smallest;
 }
 
 engine::ParameterSet variant_parameters(const PublishedStudy& study, const StudyVariant& variant) {

@@ -39,6 +39,11 @@ std::vector<engine::Trial> replicate_trials(const engine::ParameterSet& paramete
                                             int replicates,
                                             std::uint64_t first_seed = 1);
 
+/// About how long a run with those parameters takes beside others of its experiment: with the
+/// number of spheres, and with the number of steps, which goes as the smallest grain's Rayleigh
+/// time. For the order of runs alone.
+double expected_cost(const engine::ParameterSet& parameters);
+
 /// The base with a variant's parameters; its experiment with the variant's settings.
 engine::ParameterSet variant_parameters(const PublishedStudy& study, const StudyVariant& variant);
 engine::Experiment variant_experiment(const StudyVariant& variant,

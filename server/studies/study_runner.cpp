@@ -28,6 +28,8 @@ struct Question {
   std::string observable;
   double factor;  ///< SI value of the paper's unit
   std::vector<Trial> trials;
+  Samples* answers;  ///< where the sample goes, by experiment
+  double cost;       ///< expected, beside others
 };
 
 /// Whether it was not run, since the study was asked to stop.
@@ -82,33 +84,32 @@ class Runner {
   }
 
   StudyResult run() {
-    runs("drop tests", drop());
-    variants();
-    for (const StudyExperiment& experiment : study_.experiments) {
-      runs(experiment.experiment + " of every run", experiment);
-    }
+    std::vector<Question> questions = drop_tests();
+    for (const StudyExperiment& experiment : study_.experiments) add_runs(experiment, questions);
+    add_variants(questions);
+    // The cheapest first, so that a study that is interrupted has as many rows as its time allowed.
+    std::ranges::stable_sort(questions, {}, &Question::cost);
+    ask("runs and variants", questions);
     if (result_.missing == 0) search();
     return std::move(result_);
   }
 
  private:
-  /// The drop test as an experiment of the study: once, since it has nothing random.
-  [[nodiscard]] StudyExperiment drop() const {
-    return {study_.drop_experiment, study_.drop_observable, "1", 0.0, 1, 1};
-  }
-
   [[nodiscard]] Question question(const StudyExperiment& what,
                                   const engine::ParameterSet& parameters,
                                   const engine::Experiment& experiment,
+                                  Samples& answers,
                                   std::uint64_t seed = 1) const {
     return {what.experiment,
             what.observable,
             engine::unit::find(what.unit).value().factor,
-            replicate_trials(parameters, experiment, replicates_of(what, size_), seed)};
+            replicate_trials(parameters, experiment, replicates_of(what, size_), seed),
+            &answers,
+            expected_cost(parameters)};
   }
 
   /// Answers all questions at once, so that every worker is busy.
-  std::vector<Sample> ask(const std::string& part, const std::vector<Question>& questions) {
+  void ask(const std::string& part, const std::vector<Question>& questions) {
     std::vector<Trial> trials;
     for (const Question& each : questions) {
       trials.insert(trials.end(), each.trials.begin(), each.trials.end());
@@ -118,14 +119,12 @@ class Runner {
     };
     const std::vector<Evaluation> evaluations = workers_.run(trials, stop_, tell);
     note(evaluations);
-    std::vector<Sample> samples;
     std::size_t from = 0;
     for (const Question& each : questions) {
       const std::span all(evaluations);
-      samples.push_back(sample_of(each, all.subspan(from, each.trials.size())));
+      (*each.answers)[each.experiment] = sample_of(each, all.subspan(from, each.trials.size()));
       from += each.trials.size();
     }
-    return samples;
   }
 
   void note(std::span<const Evaluation> evaluations) {
@@ -136,42 +135,41 @@ class Runner {
     }
   }
 
-  /// Every run of the study in this experiment, where the paper ran it. The paper's drop test was
-  /// for every combination.
-  void runs(const std::string& part, const StudyExperiment& what) {
+  /// Of every combination, as the paper did; once, since nothing in it is random.
+  std::vector<Question> drop_tests() {
+    const StudyExperiment drop{study_.drop_experiment, study_.drop_observable, "1", 0.0, 1, 1};
     std::vector<Question> questions;
-    std::vector<std::string> names;
+    for (const StudyRun& run : study_.runs) add_run(drop, run, questions);
+    return questions;
+  }
+
+  void add_run(const StudyExperiment& what, const StudyRun& run, std::vector<Question>& questions) {
+    questions.push_back(question(what,
+                                 run_parameters(study_, run.run),
+                                 {what.experiment, fidelity_of(size_), {}},
+                                 result_.runs[run.run]));
+  }
+
+  /// Every run of the study in this experiment, where the paper ran it.
+  void add_runs(const StudyExperiment& what, std::vector<Question>& questions) {
     for (const StudyRun& run : study_.runs) {
-      const bool asked =
-          what.experiment == study_.drop_experiment || run.printed.contains(what.experiment);
-      if (!asked) continue;
-      questions.push_back(question(
-          what, run_parameters(study_, run.run), {what.experiment, fidelity_of(size_), {}}));
-      names.push_back(run.run);
-    }
-    std::vector<Sample> samples = ask(part, questions);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      result_.runs[names[i]][what.experiment] = std::move(samples[i]);
+      if (run.printed.contains(what.experiment)) add_run(what, run, questions);
     }
   }
 
-  void variants() {
-    std::vector<Question> questions;
-    std::vector<std::size_t> of;
+  void add_variants(std::vector<Question>& questions) {
+    for (const StudyVariant& variant : study_.variants) {
+      result_.variants.push_back({variant.variant, {}});
+    }
     for (std::size_t i = 0; i < study_.variants.size(); ++i) {
       const StudyVariant& variant = study_.variants[i];
-      result_.variants.push_back({variant.variant, {}});
       for (const StudyExperiment& what : study_.experiments) {
         if (std::ranges::count(variant.experiments, what.experiment) == 0) continue;
         questions.push_back(question(what,
                                      variant_parameters(study_, variant),
-                                     variant_experiment(variant, what.experiment, size_)));
-        of.push_back(i);
+                                     variant_experiment(variant, what.experiment, size_),
+                                     result_.variants[i].samples));
       }
-    }
-    std::vector<Sample> samples = ask("variants of the base", questions);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      result_.variants[of[i]].samples[questions[i].experiment] = std::move(samples[i]);
     }
   }
 
@@ -188,13 +186,13 @@ class Runner {
     found.fit = calibrator::calibrate(found.calibration, evaluator, stop_);
     std::vector<Question> questions;
     for (const StudyExperiment& what : study_.experiments) {
-      questions.push_back(
-          question(what, found.fit.best, {what.experiment, fidelity_of(size_), {}}, fresh_seed));
+      questions.push_back(question(what,
+                                   found.fit.best,
+                                   {what.experiment, fidelity_of(size_), {}},
+                                   found.samples,
+                                   fresh_seed));
     }
-    std::vector<Sample> samples = ask("the best set", questions);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      found.samples[questions[i].experiment] = std::move(samples[i]);
-    }
+    ask("the best set", questions);
     result_.search = std::move(found);
   }
 

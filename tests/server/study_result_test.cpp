@@ -128,6 +128,36 @@ TEST_CASE("a variant explains the share of the gap that it closes", "[server]") 
   CHECK_FALSE(explain(result, "none", study.experiments[0]).has_value());
 }
 
+TEST_CASE("the findings name what explains most of the gap first, and what is within its scatter",
+          "[server]") {
+  PublishedStudy study = small_study();
+  study.variants.push_back(study.variants[0]);
+  study.variants[1].variant = "heavy";
+  study.variants[1].kind = "weight";
+  StudyResult result;
+  result.study = &study;
+  result.runs["1"]["drop"] = sample({0.79, 0.81});  // the paper has 0.40
+  result.variants = {{"bouncy", {{"drop", sample({0.74, 0.86})}}},
+                     {"heavy", {{"drop", sample({0.59, 0.61})}}}};
+  std::string all;
+  for (const std::string& sentence : findings(result)) all += sentence + "\n";
+  CHECK_THAT(all,
+             Catch::Contains("weight (heavy) 50 %; restitution (bouncy) 0 %, within its scatter"));
+}
+
+TEST_CASE("a study runs what is cheap first", "[server]") {
+  const PublishedStudy study = small_study();
+  const engine::ParameterSet base = run_parameters(study, "1");
+  const auto with = [&](std::string_view field, double value) {
+    engine::ParameterSet set = base;
+    set.set(engine::make_key(field, {engine::MaterialId::grain}), value);
+    return expected_cost(set) / expected_cost(base);
+  };
+  CHECK(with("material.shear_modulus", 40e6) == Approx(2.0));
+  CHECK(with("grain_shape.members", 3.0) == Approx(3.0));
+  CHECK(with("size_spread.deviation", 0.4) == Approx(1.0 / std::cbrt(0.2)));
+}
+
 TEST_CASE("a study asked for again is answered from the store, the same to the letter",
           "[server]") {
   const TemporaryFolder folder;
