@@ -160,7 +160,9 @@ void Session::put(const GrainRow& grain_row) {
 }
 
 bool Session::fail(FailureKind kind, const std::string& message) {
-  if (!failure_) failure_ = Failure{kind, message, world_ ? world_->time() : 0.0};
+  if (failure_) return false;
+  failure_ = Failure{kind, message, world_ ? world_->time() : 0.0};
+  emit("failed");  // what it came to
   return false;
 }
 
@@ -246,7 +248,7 @@ bool Session::rest(double limit) {
 void Session::stage(std::string_view name) { emit(name); }
 
 void Session::emit(std::string_view stage) {
-  if (!run_.frames) return;
+  if (!run_.frames || !world_) return;
   const Grains& grains = world_->grains();
   const Clumps& clumps = world_->clumps();
   frame_grains_.clear();

@@ -25,10 +25,12 @@ void set_modulus(Trial& t, double shear_modulus) {
 
 }  // namespace
 
-TEST_CASE("a press too small for its grains or without speed is refused", "[engine]") {
+TEST_CASE("a press too small for its grains, too coarse in time or without speed is refused",
+          "[engine]") {
   for (const auto& [name, value] : {std::pair{"side", 0.02},
                                     std::pair{"depth", 0.02},
                                     std::pair{"speed", 0.0},
+                                    std::pair{"time_step", 0.25},
                                     std::pair{"overshoot", 1.0}}) {
     CAPTURE(name, value);
     Trial t = small_press();

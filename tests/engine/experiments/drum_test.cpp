@@ -33,13 +33,24 @@ TEST_CASE("a drum that is too small, too fast or too still is refused", "[engine
   }
 }
 
-TEST_CASE("a bed that slides in a smooth drum is a failure that says so", "[engine]") {
+TEST_CASE("a bed that slides in a smooth drum is a failure that says so and shows itself",
+          "[engine]") {
   Trial t = small_drum();
   t.experiment.settings["ribs"] = 0.0;
   set_friction(t, 0.02, 0.02);
-  const Failure failure = failure_in(evaluate(t));
+  std::string last;
+  std::size_t grains = 0;
+  Run run;
+  run.frames = [&](const Frame& frame) {
+    last = frame.stage;
+    grains = frame.grains.size();
+  };
+  const Evaluation evaluation = evaluate(t, run);
+  const Failure failure = failure_in(evaluation);
   CHECK(failure.kind == FailureKind::not_observed);
   CHECK_THAT(failure.message, Contains("slides as a whole"));
+  CHECK(last == "failed");  // a frame to look at
+  CHECK(grains == evaluation.effort.grains);
 }
 
 TEST_CASE("the drum turns its bed up on the side that rises", "[engine]") {
