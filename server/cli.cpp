@@ -19,6 +19,7 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
+#include "server/cli/laboratory_options.hpp"
 
 namespace repose::server {
 
@@ -37,6 +38,7 @@ constexpr const char* evaluate_footer =
     "  repose evaluate tilting_box --set sliding_friction.coefficient:grain-grain=0.6 --json\n"
     "  repose evaluate drop --set material.shear_modulus:grain=41.7MPa --setting height=300mm\n"
     "  repose evaluate kettle --study study.json --frames frames/\n\n"
+    "`repose explain kettle` says and draws what an experiment does.\n"
     "A value carries its unit unless it is a plain number: 41.7MPa, '15 rpm', 0.3.\n"
     "Without a study the grain is soybean: 6.496 mm, 1228 kg/m3, G 1.04 MPa, restitution 0.6,\n"
     "sliding friction 0.45 (grain-wall 0.30), rolling resistance 0.05.";
@@ -286,10 +288,13 @@ void add_bench_calibrator(CLI::App& bench, BenchCalibratorCommand& options, Work
 void add_bench(CLI::App& app,
                BenchCommand& options,
                BenchCalibratorCommand& calibrator,
+               LaboratoryOptions& laboratory,
                Work& work) {
-  CLI::App& bench = *app.add_subcommand("bench", "Measure the engine's speed and the calibrator's");
+  CLI::App& bench =
+      *app.add_subcommand("bench", "Measure the engine, the laboratory and the calibrator");
   bench.require_subcommand(1);
   add_bench_calibrator(bench, calibrator, work);
+  add_laboratory(app, bench, laboratory, work);
   CLI::App& command = *bench.add_subcommand("engine", "The engine, on beds of the reference grain");
   command.add_option("--scene", options.scenes, "Which (default: all)")
       ->check(CLI::IsMember(options.scenes))
@@ -384,6 +389,7 @@ struct Commands {
   TokenCommand token;
   BenchCommand bench;
   BenchCalibratorCommand bench_calibrator;
+  LaboratoryOptions laboratory;
   MaterialsCommand materials;
   StudyCommand study;
   Form catalogue_form = Form::json;
@@ -430,7 +436,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_token(app, commands.token, work);
   add_list(app, commands.list, work);
   add_show(app, commands.show, work);
-  add_bench(app, commands.bench, commands.bench_calibrator, work);
+  add_bench(app, commands.bench, commands.bench_calibrator, commands.laboratory, work);
   add_materials(app, commands.materials, work);
   add_study(app, commands.study, work);
   add_catalogue(app, commands.catalogue_form, commands.schema, work);

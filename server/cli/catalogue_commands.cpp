@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "engine/catalogue.hpp"
 #include "server/cli/catalogue_text.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/exit_code.hpp"
+#include "server/cli/input.hpp"
+#include "server/cli/text_table.hpp"
 #include "server/json/catalogue_json.hpp"
 #include "server/json/place.hpp"
 #include "server/json/schemas.hpp"
@@ -19,6 +22,21 @@ namespace fs = std::filesystem;
 
 int catalogue_command(Form form) {
   std::cout << (form == Form::markdown ? catalogue_markdown() : print_catalogue() + "\n");
+  return exit_code::done;
+}
+
+int explain_command(const std::string& name) {
+  if (name.empty()) {
+    TextTable table({"experiment", "which is"}, "ll");
+    for (const auto& info : engine::experiment_catalogue()) {
+      table.row({std::string(info.name), std::string(info.summary)});
+    }
+    std::cout << table.str() << "\n`repose explain NAME` says more of one.\n";
+    return exit_code::done;
+  }
+  const engine::ExperimentInfo* info = engine::find_experiment(name);
+  if (info == nullptr) return report_error(no_experiment(name), false);
+  std::cout << explanation(*info);
   return exit_code::done;
 }
 

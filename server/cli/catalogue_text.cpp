@@ -2,8 +2,13 @@
 
 #include <cmath>
 #include <span>
+#include <sstream>
 
 #include "engine/catalogue.hpp"
+#include "server/cli/text_table.hpp"
+#include "server/json/place.hpp"
+#include "server/laboratory/draft_bias.hpp"
+#include "server/laboratory/drawings.hpp"
 #include "server/report/number_text.hpp"
 
 namespace repose::server {
@@ -47,13 +52,14 @@ std::string effect_section(const engine::EffectInfo& effect) {
 }
 
 std::string experiment_section(const engine::ExperimentInfo& info) {
-  std::string text = "\n### " + std::string(info.title) + " (`" + std::string(info.name) +
-                     "`)\n\n" + std::string(info.procedure) +
-                     " Source: " + std::string(info.citation) +
-                     ".\n\n| observable | meaning | unit |\n" + "| --- | --- | --- |\n";
+  std::string text =
+      "\n### " + std::string(info.title) + " (`" + std::string(info.name) + "`)\n\n" +
+      std::string(info.procedure) + " Source: " + std::string(info.citation) + ".\n\n```" +
+      std::string(drawing_of(info.name)) + "\n```\n\n| observable | meaning | unit | draft |\n" +
+      "| --- | --- | --- | --- |\n";
   for (const engine::ObservableInfo& seen : info.observables) {
     text += "| `" + std::string(seen.name) + "` | " + std::string(seen.meaning) + " | " +
-            std::string(seen.unit.symbol) + " |\n";
+            std::string(seen.unit.symbol) + " | " + draft_words(info, seen) + " |\n";
   }
   text += head("standard", " draft | paper |");
   for (const FieldInfo& field : info.settings) {
@@ -63,7 +69,61 @@ std::string experiment_section(const engine::ExperimentInfo& info) {
   return text;
 }
 
+/// Words in lines of at most 88 letters.
+std::string wrapped(std::string_view words) {
+  constexpr std::size_t longest = 88;
+  std::string text, line;
+  std::istringstream stream{std::string(words)};
+  for (std::string word; stream >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > longest) {
+      text += line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return text + line + "\n";
+}
+
+std::string with_unit(double value, const FieldInfo& field) {
+  const std::string text = shown(value, field);
+  return field.choices.empty() && !text.empty() ? text + unit_suffix(field.unit) : text;
+}
+
 }  // namespace
+
+std::string explanation(const engine::ExperimentInfo& info) {
+  const std::string name(info.name);
+  std::string text = std::string(info.title) + " (" + name + ")\n\n" + wrapped(info.summary) +
+                     std::string(drawing_of(info.name)) + "\n\n" + wrapped(info.procedure) + "\n";
+  TextTable observables({"reads", "unit", "which is"}, "lll");
+  std::string drafts;
+  for (const engine::ObservableInfo& seen : info.observables) {
+    observables.row(
+        {std::string(seen.name), std::string(seen.unit.symbol), std::string(seen.meaning)});
+    if (const std::string words = draft_words(info, seen); !words.empty()) {
+      drafts += std::string(seen.name) + ": " + words + "\n";
+    }
+  }
+  TextTable settings({"--setting", "draft", "standard", "paper", "range", "which is"}, "lrrrrl");
+  for (const FieldInfo& field : info.settings) {
+    const auto or_standard = [&](double value) {
+      return with_unit(std::isnan(value) ? field.null_value : value, field);
+    };
+    settings.row({std::string(field.name),
+                  or_standard(field.draft),
+                  with_unit(field.null_value, field),
+                  or_standard(field.paper),
+                  field.choices.empty()
+                      ? shown(field.lower, field) + " to " + with_unit(field.upper, field)
+                      : listed(field.choices),
+                  std::string(field.meaning)});
+  }
+  return text + observables.str() + "\n" + (drafts.empty() ? "" : drafts + "\n") + settings.str() +
+         "\nTry\n  repose evaluate " + name + " --fidelity draft\n  repose evaluate " + name +
+         " --fidelity draft --frames " + name +
+         "/    # a picture of every stage, and play.html\n\nSource: " + std::string(info.citation) +
+         "\n";
+}
 
 std::string catalogue_markdown() {
   std::string text =

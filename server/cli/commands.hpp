@@ -162,6 +162,24 @@ struct BenchCalibratorCommand {
 };
 int bench_calibrator_command(const BenchCalibratorCommand& command);
 
+/// What the laboratory costs, draft and standard, on one core.
+int bench_laboratory_command(Form form);
+
+struct LaboratoryCommand {
+  int sets = 12;  ///< of parameters, for the pairs of fidelities
+  std::filesystem::path database;
+  unsigned workers = 0;
+  std::filesystem::path output;  ///< folder for the trends' page and numbers
+  Form form = Form::text;
+};
+/// How draft readings lie to standard ones.
+int bench_fidelity_command(const LaboratoryCommand& command);
+/// Every observable under every parameter.
+int trends_command(const LaboratoryCommand& command);
+
+/// What an experiment is, on a screen; without a name, which there are.
+int explain_command(const std::string& name);
+
 struct MaterialsCommand {
   std::string name;    ///< empty: all are listed
   bool study = false;  ///< print a study to start from

@@ -26,6 +26,7 @@
 #include "server/json/evaluation_json.hpp"
 #include "server/json/place.hpp"
 #include "server/json/replicates_json.hpp"
+#include "server/laboratory/draft_bias.hpp"
 #include "server/report/frame_files.hpp"
 #include "server/report/label.hpp"
 #include "server/report/number_text.hpp"
@@ -82,14 +83,7 @@ void take_study_settings(const Calibration& calibration, Experiment& experiment)
 
 Result<Trial, InputError> trial_of(const EvaluateCommand& command) {
   const engine::ExperimentInfo* info = engine::find_experiment(command.experiment);
-  if (info == nullptr) {
-    std::vector<std::string_view> names;
-    for (const auto& known : engine::experiment_catalogue()) names.push_back(known.name);
-    return Unexpected{InputError{"there is no experiment '" + command.experiment + "'" +
-                                     did_you_mean(command.experiment, names) + "; there are " +
-                                     listed(names),
-                                 {}}};
-  }
+  if (info == nullptr) return Unexpected{no_experiment(command.experiment)};
   Trial trial;
   trial.experiment.name = command.experiment;
   trial.seed = command.seed;
@@ -200,12 +194,16 @@ Replicates run_replicates(const Trial& trial,
   return replicates;
 }
 
-void print_failure(const Evaluation& evaluation) {
+/// `shown`: the run has left pictures.
+void print_failure(const Evaluation& evaluation, bool shown) {
   const auto& failure = std::get<Failure>(evaluation.outcome);
   std::cerr << "repose: " << evaluation.trial.experiment.name << " failed ("
             << engine::failure_kind_names.at(static_cast<std::size_t>(failure.kind)) << ", seed "
             << evaluation.trial.seed << ", after " << number_text(failure.simulated_seconds, 3)
-            << " simulated seconds): " << failure.message << "\n";
+            << " simulated seconds): " << failure.message << "\n"
+            << (shown || failure.simulated_seconds == 0.0
+                    ? ""
+                    : "repose: --frames FOLDER keeps a picture of what it came to\n");
 }
 
 /// "drum, draft fidelity, seed 1".
@@ -239,7 +237,16 @@ void print_text(const Replicates& replicates) {
   facts.row({"particle steps per second", number_text(replicates.particle_steps_per_second(), 3)});
   facts.row({"largest overlap / radius", number_text(effort.largest_overlap, 2)});
   facts.row({"overlap at rest / radius", number_text(effort.overlap_at_rest, 2)});
-  std::cout << observations.str() << "\n" << facts.str();
+  std::cout << observations.str() << "\n";
+  if (experiment.fidelity == engine::Fidelity::draft) {
+    const engine::ExperimentInfo& info = *engine::find_experiment(experiment.name);
+    for (const auto& seen : info.observables) {
+      const std::string words = draft_words(info, seen);
+      if (!words.empty()) std::cout << seen.name << ": " << words << "\n";
+    }
+    std::cout << "\n";
+  }
+  std::cout << facts.str();
   for (const std::string& warning : warnings(replicates)) {
     std::cout << "\nwarning: " << warning << "\n";
   }
@@ -268,7 +275,7 @@ int evaluate_command(const EvaluateCommand& command) {
   const Evaluation* failed = replicates.failed();
   if (json) std::cout << print_replicates(replicates, engine::version()) << "\n";
   if (failed != nullptr) {
-    print_failure(*failed);
+    print_failure(*failed, files.has_value());
     return interrupt.happened() ? exit_code::interrupted : exit_code::failed;
   }
   if (!json) print_text(replicates);

@@ -9,8 +9,10 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/catalogue.hpp"
 #include "server/cli/exit_code.hpp"
 #include "server/json/calibration_json.hpp"
+#include "server/json/place.hpp"
 #include "server/json/replicates_json.hpp"
 
 namespace repose::server {
@@ -62,6 +64,14 @@ int report_error(const InputError& error, bool json) {
   }
   if (json) std::cout << print_error(error.message, error.problems) << "\n";
   return exit_code::misused;
+}
+
+InputError no_experiment(const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const auto& known : engine::experiment_catalogue()) names.push_back(known.name);
+  return {"there is no experiment '" + name + "'" + did_you_mean(name, names) + "; there are " +
+              listed(names),
+          {}};
 }
 
 fs::path default_database() {

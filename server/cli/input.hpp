@@ -30,6 +30,9 @@ engine::Result<StudyInput, InputError> read_study(const std::filesystem::path& p
 /// Returns the exit code.
 int report_error(const InputError& error, bool json);
 
+/// What is wrong with the name of an experiment that there is not.
+InputError no_experiment(const std::string& name);
+
 /// $REPOSE_DB, else repose/repose.db in $XDG_DATA_HOME or ~/.local/share. The folder is made.
 std::filesystem::path default_database();
 

@@ -6,6 +6,8 @@
 #include "engine/catalogue.hpp"
 #include "engine/evaluate.hpp"
 #include "server/json/codec.hpp"
+#include "server/laboratory/draft_bias.hpp"
+#include "server/laboratory/drawings.hpp"
 
 namespace repose::server {
 
@@ -69,11 +71,18 @@ Json print_experiment(const engine::ExperimentInfo& experiment) {
                            {"meaning", observable.meaning},
                            {"unit", observable.unit.symbol},
                            {"units", units_like(observable.unit)}});
+    const DraftBias draft = draft_bias(experiment, observable);
+    if (draft.sets == 0) continue;
+    observables.back()["draft_less_standard"] = {
+        {"mean", draft.mean / observable.unit.factor},
+        {"standard_deviation", draft.deviation / observable.unit.factor},
+        {"sets", draft.sets}};
   }
   return {{"name", experiment.name},
           {"title", experiment.title},
           {"summary", experiment.summary},
           {"procedure", experiment.procedure},
+          {"drawing", drawing_of(experiment.name)},
           {"citation", experiment.citation},
           {"settings", std::move(settings)},
           {"observables", std::move(observables)}};

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <variant>
 
+#include "engine/catalogue.hpp"
 #include "server/json/text.hpp"
+#include "server/laboratory/draft_bias.hpp"
 #include "server/report/number_text.hpp"
 
 namespace repose::server {
@@ -43,6 +45,20 @@ Json run_json(const engine::Evaluation& evaluation, double wall_seconds) {
   run.update(effort_json(evaluation.effort));
   run["wall_seconds"] = wall_seconds;
   return run;
+}
+
+/// By observable: how draft readings lie to standard ones, where that was measured.
+Json draft_json(const engine::ExperimentInfo& info) {
+  Json document = Json::object();
+  for (const engine::ObservableInfo& seen : info.observables) {
+    const DraftBias draft = draft_bias(info, seen);
+    if (draft.sets == 0) continue;
+    document[std::string(seen.name)] = {{"mean", draft.mean / seen.unit.factor},
+                                        {"standard_deviation", draft.deviation / seen.unit.factor},
+                                        {"sets", draft.sets},
+                                        {"unit", seen.unit.symbol}};
+  }
+  return document;
 }
 
 }  // namespace
@@ -102,6 +118,9 @@ std::string print_replicates(const Replicates& replicates, std::string_view engi
            {"value", number_or_null(seen.value / seen.unit.factor)},
            {"standard_error", number_or_null(seen.standard_error / seen.unit.factor)},
            {"unit", seen.unit.symbol}});
+    }
+    if (experiment.fidelity == engine::Fidelity::draft) {
+      document["draft_less_standard"] = draft_json(*engine::find_experiment(experiment.name));
     }
   }
   document.update(effort_json(replicates.effort()));

@@ -83,6 +83,13 @@ TEST_CASE("a study that is not published is refused with those that are", "[end_
   CHECK_THAT(ran.output, Contains("did you mean \"boac2010\"?"));
 }
 
+TEST_CASE("an experiment is explained with its drawing and settings", "[end_to_end]") {
+  const Ran ran = repose("explain heap");
+  CHECK(ran.exit_code == 0);
+  CHECK_THAT(ran.output, Contains("disc_diameter") && Contains("heap_angle") && Contains("o o o"));
+  CHECK_THAT(repose("explain").output, Contains("kettle") && Contains("compression"));
+}
+
 TEST_CASE("the same evaluation gives the same bits", "[end_to_end]") {
   const auto observed = [] {
     const Ran ran = repose("evaluate drop --fidelity draft --seed 5 --json");
@@ -110,6 +117,7 @@ TEST_CASE("bad usage is exit code 2 with a sentence on standard error", "[end_to
   for (const char* words : {"evaluate",
                             "evaluate kettl",
                             "evaluate drop --fidelity huge",
+                            "explain kettl",
                             "evaluate drop --set nonsense",
                             "evaluate drop --replicates 0",
                             "calibrate /nowhere/study.json",
