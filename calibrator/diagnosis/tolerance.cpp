@@ -32,7 +32,7 @@ double tolerance_of(const Measurement& measurement, const Tolerances& stated) {
 Eigen::MatrixXd covariance_of(std::span<const Measurement> measurements, const Tolerances& stated) {
   const auto count = static_cast<Eigen::Index>(measurements.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
-  constexpr double shared = 0.95;
+  constexpr double shared = 0.75;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Measurement& a = measurements[static_cast<std::size_t>(i)];
     const double tau = tolerance_of(a, stated) * size_of(a);

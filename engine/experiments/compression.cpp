@@ -97,10 +97,12 @@ struct Compression {
   static constexpr std::array observables{
       ObservableInfo{"secant_modulus",
                      unit::megapascal,
-                     "stress over strain between a quarter of `stress` and `stress`, loading"},
+                     "stress over strain between a quarter of `stress` and `stress`, loading",
+                     0.04},
       ObservableInfo{"residual_strain_ratio",
                      unit::one,
-                     "strain left at a twentieth of the largest stress over the largest strain"},
+                     "strain left at a twentieth of the largest stress over the largest strain",
+                     0.05},
   };
 
   static std::string refuse(const Settings& s, double largest_grain_diameter);

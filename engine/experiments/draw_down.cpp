@@ -89,8 +89,9 @@ struct DrawDown {
   static constexpr std::array observables{
       ObservableInfo{"discharge_rate",
                      unit::kilogram_per_second_metre,
-                     "mass that passes in a unit of time through a unit of the slot's length"},
-      ObservableInfo{"drain_angle", unit::degree, "mean slope of the two surfaces that stay"},
+                     "mass that passes in a unit of time through a unit of the slot's length",
+                     0.02},
+      ObservableInfo{"drain_angle", unit::degree, "mean slope of the two surfaces that stay", 0.05},
   };
 
   static std::string refuse(const Settings& s, double largest_grain_diameter);

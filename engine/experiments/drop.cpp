@@ -50,7 +50,8 @@ struct Drop {
                        .upper = 1e5}},
   };
   static constexpr std::array observables{
-      ObservableInfo{"restitution", unit::one, "square root of rebound height over drop height"},
+      ObservableInfo{
+          "restitution", unit::one, "square root of rebound height over drop height", 0.002},
   };
 
   static Readings run(const Settings& s, Session& session);

@@ -99,7 +99,7 @@ struct Drum {
                        .upper = 1.0}},
   };
   static constexpr std::array observables{
-      ObservableInfo{"dynamic_angle", unit::degree, "mean slope of the surface that flows"},
+      ObservableInfo{"dynamic_angle", unit::degree, "mean slope of the surface that flows", 0.07},
   };
 
   static std::string refuse(const Settings& s, double largest_grain_diameter);

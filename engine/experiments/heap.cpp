@@ -91,7 +91,7 @@ struct Heap {
                        .upper = 1.0}},
   };
   static constexpr std::array observables{
-      ObservableInfo{"heap_angle", unit::degree, "slope of the heap's surface"},
+      ObservableInfo{"heap_angle", unit::degree, "slope of the heap's surface", 0.04},
   };
 
   static std::string refuse(const Settings& s, double largest_grain_diameter);

@@ -125,7 +125,8 @@ struct Kettle {
   static constexpr std::array observables{
       ObservableInfo{"bulk_density",
                      unit::kilogram_per_cubic_metre,
-                     "mass of the grains inside below the rim over the kettle's volume"},
+                     "mass of the grains inside below the rim over the kettle's volume",
+                     0.01},
   };
 
   static std::string refuse(const Settings& s, double largest_grain_diameter);

@@ -85,8 +85,10 @@ struct TiltingBox {
   static constexpr std::array observables{
       ObservableInfo{"static_angle",
                      unit::degree,
-                     "tilt at which the top layer has slid by half a grain diameter"},
-      ObservableInfo{"onset_angle", unit::degree, "tilt at which the top layer moves at 0.01 m/s"},
+                     "tilt at which the top layer has slid by half a grain diameter",
+                     0.12},
+      ObservableInfo{
+          "onset_angle", unit::degree, "tilt at which the top layer moves at 0.01 m/s", 0.12},
   };
 
   static std::string refuse(const Settings& s, double largest_grain_diameter);
