@@ -2,13 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "calibrator/design.hpp"
 #include "calibrator/diagnosis/chi_squared.hpp"
+#include "calibrator/diagnosis/choice.hpp"
 #include "calibrator/diagnosis/excuses.hpp"
 #include "calibrator/diagnosis/models.hpp"
+#include "calibrator/diagnosis/paired_offset.hpp"
+#include "calibrator/diagnosis/refits.hpp"
+#include "calibrator/diagnosis/rivals.hpp"
 #include "calibrator/diagnosis/screen.hpp"
 #include "calibrator/diagnosis/verdict.hpp"
 
@@ -22,7 +29,7 @@ using Vector = Eigen::VectorXd;
 constexpr int probe_replicates = 2;
 constexpr double probe_strength =
     0.8;  // large steps beat replicates: the trace is read above noise
-constexpr std::uint64_t anchor_design = 1'000'000, refit_design = 2'000'000;  // apart by index
+constexpr std::uint64_t anchor_design = 1'000'000;  // apart from other designs
 
 UnitPoint unit_point(const Vector& x, std::size_t dimensions) {
   return {x.data(), x.data() + dimensions};
@@ -32,21 +39,6 @@ Vector vector_of(const UnitPoint& point) {
   return Eigen::Map<const Vector>(point.data(), static_cast<Index>(point.size()));
 }
 
-/// Root mean square of z over the measurements with that role; NaN where there is none.
-double rms_z(const DiagnosisQuestion& question, const std::vector<double>& predicted, Role role) {
-  double sum = 0.0;
-  int count = 0;
-  for (std::size_t j = 0; j < predicted.size(); ++j) {
-    const Measurement& measurement = question.calibration.measurements[j];
-    if (measurement.role != role || !std::isfinite(predicted[j])) continue;
-    const auto i = static_cast<Index>(j);
-    const double gap = predicted[j] - measurement.value;
-    sum += gap * gap / question.covariance(i, i);
-    ++count;
-  }
-  return count == 0 ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(sum / count);
-}
-
 class Inquiry {
  public:
   Inquiry(const DiagnosisQuestion& question,
@@ -54,6 +46,7 @@ class Inquiry {
           const std::stop_token& stop,
           const DiagnosisObserver& observer)
       : question_(question),
+        evaluator_(evaluator),
         stop_(stop),
         observer_(observer),
         runs_(question.calibration, question.suspects, evaluator, question.fit),
@@ -62,23 +55,22 @@ class Inquiry {
   std::optional<Diagnosis> run();
 
  private:
-  using Points = std::vector<SuiteRuns::Point>;
-
   /// False where it was stopped.
   bool ask(const std::string& stage, const Points& points);
+  void tell(const std::string& stage) const;
+  bool learn_offset();
   bool anchor(Diagnosis& diagnosis);
   bool probe(Diagnosis& diagnosis);
   [[nodiscard]] Vector trace_of(std::size_t suspect, double& noise) const;
   void screen(Diagnosis& diagnosis);
   void fit_excuses(Diagnosis& diagnosis);
   bool refit(const std::vector<Additions>& candidates, Diagnosis& diagnosis);
+  bool refit_best(Diagnosis& diagnosis);
   bool refit_pairs(Diagnosis& diagnosis);
-  [[nodiscard]] Points spread(const Additions& on, int count, const Vector* about, double share);
-  [[nodiscard]] std::vector<Vector> starts_of(const Additions& on) const;
-  [[nodiscard]] Refit summary(const Model& model) const;
-  [[nodiscard]] std::vector<double> predictions(const Model& model) const;
+  bool settle(Diagnosis& diagnosis);
 
-  const DiagnosisQuestion& question_;
+  DiagnosisQuestion question_;
+  const Evaluator& evaluator_;
   std::stop_token stop_;
   const DiagnosisObserver& observer_;
   SuiteRuns runs_;
@@ -89,45 +81,27 @@ class Inquiry {
   std::vector<std::size_t> screened_;  ///< suspects in the order of the screen's departures
   std::vector<ExcuseDirection> excuses_;
   std::optional<Screen> screen_;
-  std::uint64_t designs_ = 0;
+  std::optional<Refits> refits_;
+  std::vector<Model> refitted_;  ///< in the order of the diagnosis' refits
 };
+
+void Inquiry::tell(const std::string& stage) const {
+  if (observer_) observer_({stage, runs_.spent()});
+}
 
 bool Inquiry::ask(const std::string& stage, const Points& points) {
   if (stop_.stop_requested()) return false;
-  if (observer_) observer_({stage, runs_.spent()});
+  tell(stage);
   runs_.run(points);
   return !stop_.stop_requested();
 }
 
-/// Latin hypercube over the whole box, or over a share of it about a point.
-Inquiry::Points Inquiry::spread(const Additions& on, int count, const Vector* about, double share) {
-  const ModelSpace space = models_->space(on);
-  Points points;
-  for (const UnitPoint& u : latin_hypercube(static_cast<std::size_t>(count),
-                                            dimensions_ + on.size(),
-                                            question_.calibration.seed,
-                                            refit_design + designs_)) {
-    SuiteRuns::Point point;
-    for (std::size_t k = 0; k < u.size(); ++k) {
-      const auto i = static_cast<Index>(k);
-      const bool strength = k >= dimensions_;
-      // Strengths beyond 1 are allowed, but not looked for.
-      const double upper = strength ? 1.0 : space.upper(i);
-      double x = space.lower(i) + u[k] * (upper - space.lower(i));
-      if (about != nullptr) {
-        const double radius = strength ? share * 5.0 / 3.0 : share;
-        x = std::clamp((*about)(i) + radius * (2.0 * u[k] - 1.0), space.lower(i), space.upper(i));
-      }
-      if (strength) {
-        point.strengths[on[k - dimensions_]] = x;
-      } else {
-        point.at.push_back(x);
-      }
-    }
-    points.push_back(std::move(point));
-  }
-  ++designs_;
-  return points;
+bool Inquiry::learn_offset() {
+  if (!wants_offset(question_.calibration)) return true;
+  if (stop_.stop_requested()) return false;
+  tell("offset");
+  add_offset(runs_, question_);
+  return !stop_.stop_requested();
 }
 
 /// The calibrated model's most probable set, with enough runs around it for its slopes.
@@ -147,7 +121,13 @@ bool Inquiry::anchor(Diagnosis& diagnosis) {
   });
   const int wanted = 6 * static_cast<int>(dimensions_) - static_cast<int>(close);
   if (wanted > 0) {
-    if (!ask("anchor", spread({}, wanted, &base_->fit.at, radius))) return false;
+    const Points points = spread(models_->space({}),
+                                 {},
+                                 wanted,
+                                 question_.calibration.seed,
+                                 anchor_design + 1,
+                                 Neighbourhood{base_->fit.at, radius});
+    if (!ask("anchor", points)) return false;
     starts.assign({base_->fit.at});
     base_.emplace(models_->fit({}, starts));
   }
@@ -298,171 +278,85 @@ void Inquiry::fit_excuses(Diagnosis& diagnosis) {
   std::ranges::sort(diagnosis.excuses, {}, &Excuse::deviance);
 }
 
-/// Near the calibrated set with the strength that the screen expects, where the effect is weak, and
-/// half-way to the middle of the box where it is strong: the calibrated set is biased by the lack.
-std::vector<Vector> Inquiry::starts_of(const Additions& on) const {
-  const auto d = static_cast<Index>(dimensions_), m = static_cast<Index>(on.size());
-  const auto extended = [&](const Vector& head, double strength) {
-    Vector x(d + m);
-    x << head, Vector::Constant(m, strength);
-    return x;
-  };
-  Vector expected = extended(base_->fit.at, 0.1);
-  for (Index k = 0; k < m; ++k) {
-    const auto place = std::ranges::find(screened_, on[static_cast<std::size_t>(k)]);
-    const auto i = static_cast<std::size_t>(place - screened_.begin());
-    expected(d + k) = std::min(screen_->scores()[i].strength, 1.0);
-  }
-  std::vector<Vector> starts{expected,
-                             extended(base_->fit.at, 0.1),
-                             extended(0.5 * base_->fit.at + Vector::Constant(d, 0.25), 0.6)};
-  for (Index k = 0; k < m; ++k) {
-    if (!question_.suspects[on[static_cast<std::size_t>(k)]].two_sided) continue;
-    Vector other = starts.back();
-    other(d + k) *= -1.0;
-    starts.push_back(std::move(other));
-  }
-  return starts;
-}
-
-std::vector<double> Inquiry::predictions(const Model& model) const {
-  const Vector mean = model.emulator.mean(model.fit.at);
-  std::vector<double> result(mean.data(), mean.data() + mean.size());
-  for (std::size_t j = 0; j < result.size() && j < question_.fit.offset.size(); ++j) {
-    result[j] += question_.fit.offset[j];
-  }
-  return result;
-}
-
-Refit Inquiry::summary(const Model& model) const {
-  Refit refit;
-  refit.effects = model.on;
-  refit.parameters = runs_.space().at(unit_point(model.fit.at, dimensions_));
-  for (std::size_t k = 0; k < model.on.size(); ++k) {
-    const double strength = model.fit.at(static_cast<Index>(dimensions_ + k));
-    refit.strengths.push_back(strength);
-    question_.suspects[model.on[k]].apply(refit.parameters, strength);
-  }
-  refit.predicted = predictions(model);
-  refit.deviance = model.fit.deviance;
-  refit.gain = base_->fit.deviance - model.fit.deviance;
-  refit.misfit = model.fit.misfit;
-  refit.freedom = model.fit.freedom;
-  refit.p = chi_squared_tail(refit.misfit, refit.freedom);
-  refit.at_bound = model.fit.inside.size() < static_cast<std::size_t>(model.fit.at.size());
-  refit.fitted_z = rms_z(question_, refit.predicted, Role::fit);
-  refit.held_out_z = rms_z(question_, refit.predicted, Role::held_out);
-  if (model.on.size() == 1) {
-    const Models::Range range = models_->strength_range(model);
-    refit.strength_lower = {range.lower};
-    refit.strength_upper = {range.upper};
-  }
-  return refit;
-}
-
-/// All candidates side by side: a design over the whole box each, then designs about the running
-/// optimum that follow it until it stays. One that is far behind after the first is given up.
 bool Inquiry::refit(const std::vector<Additions>& candidates, Diagnosis& diagnosis) {
-  struct Candidate {
-    Additions on;
-    std::optional<Model> model;
-    bool open = true;
-  };
-  std::vector<Candidate> all;
-  for (const Additions& on : candidates) all.push_back({on, {}, true});
-  constexpr int rounds = 5, least_rounds = 3;
-  for (int round = 0; round < rounds; ++round) {
-    Points points;
-    std::string names;
-    for (Candidate& candidate : all) {
-      if (!candidate.open) continue;
-      const int unknowns = static_cast<int>(dimensions_ + candidate.on.size());
-      const int count = std::clamp(3 * unknowns - (round == 0 ? 2 : 4), round == 0 ? 10 : 8, 20);
-      const Points design = spread(candidate.on,
-                                   count,
-                                   candidate.model ? &candidate.model->fit.at : nullptr,
-                                   round == 1 ? 0.18 : 0.12);
-      points.insert(points.end(), design.begin(), design.end());
-      for (const std::size_t k : candidate.on) {
-        names += (names.empty() ? "" : ", ") + question_.suspects[k].name;
-      }
-    }
-    if (points.empty()) break;
-    if (!ask("refit " + names, points)) return false;
-    double best = std::numeric_limits<double>::infinity();
-    for (Candidate& candidate : all) {
-      if (!candidate.open) continue;
-      std::vector<Vector> starts;
-      if (candidate.model) starts.push_back(candidate.model->fit.at);
-      if (round < 2) std::ranges::copy(starts_of(candidate.on), std::back_inserter(starts));
-      const Vector before = starts.front();
-      candidate.model.emplace(models_->fit(candidate.on, starts));
-      best = std::min(best, candidate.model->fit.deviance);
-      const auto d = static_cast<Index>(dimensions_);
-      const Vector moved = (candidate.model->fit.at - before).cwiseAbs();
-      const double way = std::max(d == 0 ? 0.0 : moved.head(d).maxCoeff() / 0.15,
-                                  moved.tail(moved.size() - d).maxCoeff() / 0.25);
-      candidate.open = round + 1 < least_rounds || way > 0.8;
-    }
-    for (Candidate& candidate : all) {
-      constexpr double far = 20.0;  // no later design has turned such a gap
-      if (candidate.model->fit.deviance > best + far) candidate.open = false;
-    }
+  auto models = refits_->fit(candidates);
+  if (!models) return false;
+  std::ranges::move(*models, std::back_inserter(refitted_));
+  std::ranges::stable_sort(refitted_, {}, [](const Model& model) { return model.fit.deviance; });
+  diagnosis.refits.clear();
+  for (const Model& model : refitted_) {
+    diagnosis.refits.push_back(summary_of(question_, *models_, runs_, base_->fit, model));
   }
-  for (const Candidate& candidate : all) diagnosis.refits.push_back(summary(*candidate.model));
-  std::ranges::sort(diagnosis.refits, {}, &Refit::deviance);
   return true;
 }
 
-/// The two pairs of largest one-step gain, and the best with the best single effect.
+bool Inquiry::refit_best(Diagnosis& diagnosis) {
+  std::vector<double> expected(question_.suspects.size(), 0.0);
+  for (std::size_t i = 0; i < screened_.size(); ++i) {
+    expected[screened_[i]] = screen_->scores()[i].strength;
+  }
+  refits_.emplace(
+      question_,
+      *models_,
+      base_->fit.at,
+      expected,
+      [this](const std::string& stage, const Points& points) { return ask(stage, points); });
+  const auto best = best_singles(*screen_, screened_, diagnosis);
+  return best.empty() || refit(best, diagnosis);
+}
+
 bool Inquiry::refit_pairs(Diagnosis& diagnosis) {
-  struct Pair {
-    double gain;
-    Additions on;
+  const auto best = best_pairs(*screen_, screened_, diagnosis);
+  return best.empty() || refit(best, diagnosis);
+}
+
+/// Explanations that are still open, and what would settle them.
+bool Inquiry::settle(Diagnosis& diagnosis) {
+  if (question_.candidates.empty()) return true;
+  std::vector<Rival> rivals;
+  const auto add = [&](const Model& model, double weight) {
+    rivals.push_back(rival_of(question_, runs_, model, weight, rivals.size()));
+    diagnosis.rivals.push_back(model.on);
   };
-  std::vector<Pair> pairs;
-  for (std::size_t a = 0; a < screened_.size(); ++a) {
-    for (std::size_t b = a + 1; b < screened_.size(); ++b) {
-      pairs.push_back({screen_->pair_gain(a, b), {screened_[a], screened_[b]}});
-    }
+  const OpenExplanations open = open_explanations(diagnosis);
+  for (const auto& [index, weight] : open.refits) add(refitted_[index], weight);
+  if (open.calibrated > 0.0) add(*base_, open.calibrated);
+  for (const auto& [effect, weight] : open.imitated) {
+    add(imitated(*models_, *base_, effect, diagnosis.effects[effect].change), weight);
   }
-  std::ranges::stable_sort(pairs, std::greater<>(), &Pair::gain);
-  std::vector<Additions> chosen;
-  const std::size_t winner = diagnosis.refits.front().effects.front();
-  for (const Pair& pair : pairs) {
-    const bool with_winner = std::ranges::find(pair.on, winner) != pair.on.end();
-    const bool have_winner = std::ranges::any_of(
-        chosen, [&](const Additions& on) { return std::ranges::find(on, winner) != on.end(); });
-    if (chosen.size() < 2 || (chosen.size() < 3 && with_winner && !have_winner)) {
-      chosen.push_back(pair.on);
-    }
+  if (rivals.size() < 2) {
+    diagnosis.rivals.clear();
+    return true;
   }
-  return chosen.empty() || refit(chosen, diagnosis);
+  tell("next");
+  diagnosis.next =
+      weigh_candidates(question_.calibration, question_.candidates, rivals, evaluator_);
+  for (const Rival& rival : rivals) diagnosis.evaluations += static_cast<int>(rival.draws.size());
+  if (diagnosis.next.size() > 3) diagnosis.next.resize(3);
+  if (diagnosis.next.empty()) {
+    diagnosis.remarks.emplace_back(
+        "No measurement that the virtual experiments could make would settle what is still open.");
+  }
+  return !stop_.stop_requested();
 }
 
 std::optional<Diagnosis> Inquiry::run() {
   Diagnosis diagnosis;
-  if (!anchor(diagnosis) || !probe(diagnosis)) return std::nullopt;
+  if (!learn_offset() || !anchor(diagnosis) || !probe(diagnosis)) return std::nullopt;
   diagnosis.parameters = runs_.space().at(unit_point(base_->fit.at, dimensions_));
-  diagnosis.predicted = predictions(*base_);
+  diagnosis.predicted = predictions_of(question_, *base_);
   diagnosis.fitted_z = rms_z(question_, diagnosis.predicted, Role::fit);
   diagnosis.held_out_z = rms_z(question_, diagnosis.predicted, Role::held_out);
   screen(diagnosis);
   fit_excuses(diagnosis);
   if (!adequate(diagnosis)) {
-    std::vector<Additions> best;
-    std::vector<std::size_t> order = screened_;
-    std::ranges::stable_sort(
-        order, std::greater<>(), [&](std::size_t k) { return diagnosis.effects[k].score; });
-    for (std::size_t i = 0; i < std::min<std::size_t>(3, order.size()); ++i) {
-      best.push_back({order[i]});
-    }
-    if (!best.empty() && !refit(best, diagnosis)) return std::nullopt;
+    if (!refit_best(diagnosis)) return std::nullopt;
     if (wants_pairs(diagnosis) && !refit_pairs(diagnosis)) return std::nullopt;
   }
   find_families(*screen_, screened_, diagnosis);
   conclude(question_.calibration, diagnosis);
-  diagnosis.evaluations = runs_.spent();
+  if (!settle(diagnosis)) return std::nullopt;
+  diagnosis.evaluations += runs_.spent();
   return diagnosis;
 }
 
@@ -477,12 +371,17 @@ DiagnosisQuestion question_of(const Calibration& calibration,
                              suspects_of(calibration, fit.best),
                              covariance_of(calibration.measurements, stated),
                              Vector(count),
-                             Vector(count)};
+                             Vector(count),
+                             Vector::Zero(count),
+                             candidates_of(calibration, stated)};
   for (Index j = 0; j < count; ++j) {
     const Measurement& measurement = calibration.measurements[static_cast<std::size_t>(j)];
     question.sizes(j) = size_of(measurement);
     question.freedom(j) = measurement.replicates > 1 ? measurement.replicates - 1.0
                                                      : std::numeric_limits<double>::infinity();
+    if (static_cast<std::size_t>(j) < fit.offset.size()) {
+      question.offset(j) = fit.offset[static_cast<std::size_t>(j)];
+    }
     if (static_cast<std::size_t>(j) < fit.offset_error.size()) {
       question.covariance(j, j) += std::pow(fit.offset_error[static_cast<std::size_t>(j)], 2);
     }

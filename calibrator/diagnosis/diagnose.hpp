@@ -6,6 +6,10 @@
 ///      with their joint null; nothing beyond the 5 % of chance: the model is adequate
 ///   4. else the three best suspects are refitted with all parameters, in designs that shrink
 ///   5. verdict by deviance against the best excuse; pairs where no single suspect fits
+///   6. explanations that are still open are asked what they expect of measurements not made yet
+///
+/// Laboratories have the standard apparatus. Where a study is content with drafts, what the
+/// standard adds to them is learnt first, from paired runs at the best set.
 ///
 /// Source of the rules' error rates: 7.1 of the acceptance tests, tests/calibrator/diagnosis.
 #pragma once
@@ -14,11 +18,13 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "calibrator/calibration.hpp"
 #include "calibrator/diagnosis/diagnosis.hpp"
+#include "calibrator/diagnosis/next_measurement.hpp"
 #include "calibrator/diagnosis/tolerance.hpp"
 #include "calibrator/evaluator.hpp"
 #include "calibrator/fit.hpp"
@@ -32,6 +38,8 @@ struct DiagnosisQuestion {
   Eigen::MatrixXd covariance;  ///< of all measurements, SI: standard errors and tolerances
   Eigen::VectorXd sizes;       ///< SI: what 100 % of each measurement is
   Eigen::VectorXd freedom;     ///< of each standard error; infinite where it is known
+  Eigen::VectorXd offset;      ///< SI: what the laboratory's apparatus adds to the runs'
+  std::vector<Candidate> candidates = {};  ///< that could be measured next
 };
 
 /// The question with the catalogue's suspects and the stated tolerances.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "calibrator/diagnosis/suspect.hpp"
+#include "engine/experiment.hpp"
 #include "engine/parameter_set.hpp"
 
 namespace repose::calibrator {
@@ -44,10 +45,11 @@ enum class EffectStatus : std::uint8_t {
   excluded,      ///< above the stated strength
   not_testable,  ///< even a strong one would leave no trace in these data
   not_probed,    ///< its runs failed, or the study lacks what it needs
+  outdone,       ///< it would explain something, but another explanation does so better
 };
 
-inline constexpr std::array<std::string_view, 4> effect_status_names{
-    "supported", "excluded", "not_testable", "not_probed"};
+inline constexpr std::array<std::string_view, 5> effect_status_names{
+    "supported", "excluded", "not_testable", "not_probed", "outdone"};
 
 /// A model with effects added, refitted with all of them free.
 struct Refit {
@@ -92,6 +94,17 @@ struct Excuse {
   double misfit_p = 1.0;
 };
 
+/// A measurement that would tell rival explanations apart.
+struct NextMeasurement {
+  engine::Experiment experiment;
+  std::string observable;
+  engine::Unit unit;
+  double standard_error = 0.0;         ///< SI; expected, the tolerance of the code included
+  std::vector<double> predicted = {};  ///< SI, by each of Diagnosis::rivals
+  double evidence = 0.0;               ///< most between two rivals, in squared standard errors
+  double gain = 0.0;                   ///< by which measurements are ranked
+};
+
 struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::adequate;
   Grade grade = Grade::none;
@@ -109,7 +122,10 @@ struct Diagnosis {
   std::vector<Refit> refits;           ///< best first
   std::vector<std::size_t> plausible;  ///< indices into `refits` that the data cannot tell apart
   std::vector<std::vector<std::size_t>> families;  ///< effects with the same trace
-  int evaluations = 0;                             ///< spent by the diagnosis
+  std::vector<std::vector<std::size_t>> rivals;  ///< explanations that are open, by their effects;
+                                                 ///< none: the calibrated model
+  std::vector<NextMeasurement> next;             ///< what would settle it, best first
+  int evaluations = 0;                           ///< spent by the diagnosis
   std::vector<std::string> remarks;
 };
 
@@ -118,7 +134,7 @@ using Tolerances = std::map<std::string, double>;
 
 /// Told while the work goes on.
 struct DiagnosisProgress {
-  std::string stage;  ///< "anchor", "probe", "refit NAME, NAME"
+  std::string stage;  ///< "offset", "anchor", "probe", "refit NAME, NAME", "next"
   int evaluations_done = 0;
 };
 using DiagnosisObserver = std::function<void(const DiagnosisProgress&)>;

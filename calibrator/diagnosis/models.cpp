@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include <Eigen/Cholesky>
 
 #include "calibrator/diagnosis/screen.hpp"
 
@@ -19,6 +20,21 @@ constexpr double threshold = 3.84;          // 95 % of chi-squared with one degr
 
 }  // namespace
 
+std::vector<Vector> draws_of(const Model& model, int count, engine::Random& random) {
+  const Matrix& jacobian = model.fit.jacobian;
+  Matrix curvature = jacobian.transpose() * jacobian;
+  curvature.diagonal() += model.space.precision.cwiseAbs2();
+  const Eigen::LLT<Matrix> root(curvature);
+  std::vector<Vector> result{model.fit.at};
+  for (int n = 1; n < count; ++n) {
+    Vector z(model.fit.at.size());
+    for (double& value : z) value = random.normal();
+    const Vector x = model.fit.at + root.matrixU().solve(z);
+    result.push_back(x.cwiseMax(model.space.lower).cwiseMin(model.space.upper));
+  }
+  return result;
+}
+
 Models::Models(const DiagnosisQuestion& question, const SuiteRuns& runs)
     : question_(question), runs_(runs) {
   const TrendEmulator emulator = learn({});
@@ -31,8 +47,7 @@ Models::Models(const DiagnosisQuestion& question, const SuiteRuns& runs)
   for (Index i = 0; i < targets_.size(); ++i) {
     const auto j = static_cast<std::size_t>(fitted_[static_cast<std::size_t>(i)]);
     // Targets are at the fidelity of the search.
-    const double offset = j < question.fit.offset.size() ? question.fit.offset[j] : 0.0;
-    targets_(i) = measurements[j].value - offset;
+    targets_(i) = measurements[j].value - question.offset(static_cast<Index>(j));
   }
 }
 
@@ -111,12 +126,21 @@ Models::Range Models::strength_range(const Model& model) const {
   };
   walk(middle, steps, 1);
   walk(middle - 1, -1, -1);
+  // The square root of a gain is nearly straight: the limits lie between the grid's points.
   const double best = *std::ranges::min_element(deviance);
-  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  const auto root = [&](int i) { return std::sqrt(deviance[static_cast<std::size_t>(i)] - best); };
+  const double limit = std::sqrt(threshold);
+  const auto crossing = [&](int inside, int outside) {
+    const double share = (limit - root(inside)) / (root(outside) - root(inside));
+    return lower + step * (inside + share * (outside - inside));
+  };
+  Range range{upper, lower};
   for (int i = 0; i < steps; ++i) {
-    if (deviance[static_cast<std::size_t>(i)] - best > threshold) continue;
-    range.lower = std::min(range.lower, lower + step * i);
-    range.upper = std::max(range.upper, lower + step * i);
+    if (root(i) > limit) continue;
+    range.lower =
+        std::min(range.lower, i > 0 && root(i - 1) > limit ? crossing(i, i - 1) : lower + step * i);
+    range.upper = std::max(
+        range.upper, i + 1 < steps && root(i + 1) > limit ? crossing(i, i + 1) : lower + step * i);
   }
   return range;
 }

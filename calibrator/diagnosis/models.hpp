@@ -11,6 +11,7 @@
 #include "calibrator/diagnosis/model_fit.hpp"
 #include "calibrator/diagnosis/suite_runs.hpp"
 #include "calibrator/diagnosis/trend_emulator.hpp"
+#include "engine/random.hpp"
 
 namespace repose::calibrator {
 
@@ -24,6 +25,10 @@ struct Model {
   ModelFit fit;
 };
 
+/// Points that the targets allow: the optimum, then draws from the normal law about it, held to the
+/// box.
+std::vector<Eigen::VectorXd> draws_of(const Model& model, int count, engine::Random& random);
+
 class Models {
  public:
   Models(const DiagnosisQuestion& question, const SuiteRuns& runs);
@@ -36,6 +41,9 @@ class Models {
     double lower = 0.0, upper = 0.0;
   };
   [[nodiscard]] Range strength_range(const Model& model) const;
+
+  /// Variance of one run, per measurement; below zero where it is not known.
+  [[nodiscard]] Eigen::VectorXd noise() const { return learn({}).noise(); }
 
   /// Measurements that are fitted and that enough runs have observed.
   [[nodiscard]] const std::vector<Eigen::Index>& fitted() const { return fitted_; }

@@ -25,6 +25,39 @@ SuiteRuns::SuiteRuns(const Calibration& calibration,
   }
 }
 
+std::uint64_t SuiteRuns::next_seed() {
+  // A function of the question alone, so that a replay asks the same.
+  return engine::Random(
+             calibration_.seed, engine::Purpose::diagnosis, static_cast<std::uint64_t>(spent_++))
+             .bits() >>
+         11U;
+}
+
+std::vector<std::vector<double>> SuiteRuns::run_pairs(const UnitPoint& at,
+                                                      engine::Fidelity other,
+                                                      int count) {
+  std::vector<engine::Trial> trials;
+  const engine::ParameterSet parameters = space_.at(at);
+  for (int pair = 0; pair < count; ++pair) {
+    const std::uint64_t seed = next_seed();
+    suite_.append_trials(parameters, calibration_.budget.fidelity, seed, trials);
+    suite_.append_trials(parameters, other, seed, trials);
+    ++spent_;
+  }
+  const std::vector<engine::Evaluation> evaluations = evaluator_(trials);
+  std::span rest(evaluations);
+  std::vector<std::vector<double>> differences;
+  for (int pair = 0; pair < count; ++pair) {
+    runs_.push_back({at, {}, suite_.read(rest.first(suite_.size()))});
+    differences.push_back(suite_.read(rest.subspan(suite_.size(), suite_.size())));
+    for (std::size_t j = 0; j < differences.back().size(); ++j) {
+      differences.back()[j] -= runs_.back().values[j];
+    }
+    rest = rest.subspan(2 * suite_.size());
+  }
+  return differences;
+}
+
 void SuiteRuns::run(std::span<const Point> points) {
   std::vector<engine::Trial> trials;
   std::vector<SuiteRun> asked;
@@ -36,13 +69,7 @@ void SuiteRuns::run(std::span<const Point> points) {
       suspects_[suspect].apply(parameters, snapped);
       run.strengths[suspect] = snapped;
     }
-    // A function of the question alone, so that a replay asks the same.
-    const std::uint64_t seed =
-        engine::Random(
-            calibration_.seed, engine::Purpose::diagnosis, static_cast<std::uint64_t>(spent_++))
-            .bits() >>
-        11U;
-    suite_.append_trials(parameters, calibration_.budget.fidelity, seed, trials);
+    suite_.append_trials(parameters, calibration_.budget.fidelity, next_seed(), trials);
     asked.push_back(std::move(run));
   }
   const std::vector<engine::Evaluation> evaluations = evaluator_(trials);

@@ -2,6 +2,7 @@
 /// suspects are absent, and those that it asks for.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string_view>
@@ -42,6 +43,12 @@ class SuiteRuns {
   };
   void run(std::span<const Point> points);
 
+  /// The same seeds of one point at both fidelities, pair by pair: what the other gave less what
+  /// the search's gave. The search's runs are kept, the other's are another quantity.
+  std::vector<std::vector<double>> run_pairs(const UnitPoint& at,
+                                             engine::Fidelity other,
+                                             int count);
+
   [[nodiscard]] const std::vector<SuiteRun>& all() const { return runs_; }
   [[nodiscard]] int spent() const { return spent_; }
   [[nodiscard]] const SearchSpace& space() const { return space_; }
@@ -54,6 +61,8 @@ class SuiteRuns {
   [[nodiscard]] Table table(std::span<const std::size_t> on) const;
 
  private:
+  std::uint64_t next_seed();
+
   const Calibration& calibration_;
   std::span<const Suspect> suspects_;
   const Evaluator& evaluator_;

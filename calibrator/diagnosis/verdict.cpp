@@ -11,9 +11,7 @@ namespace repose::calibrator {
 namespace {
 
 constexpr double alpha_named = 0.03, alpha_unnamed = 0.015, alpha_misfit = 0.005;
-constexpr double close = 6.0;   // of two deviances
-constexpr double fits = 0.02;   // p of a misfit that nothing more needs to explain
-constexpr double alike = 0.95;  // similarity of two traces that are one
+constexpr double fits = 0.02;  // p of a misfit that nothing more needs to explain
 constexpr double one_sided = 1.645;
 
 std::string percent(double share) {
@@ -56,7 +54,14 @@ std::vector<std::size_t> rivals(const Diagnosis& diagnosis) {
   }
   for (const auto& family : diagnosis.families) {
     if (std::ranges::find(family, best.effects.front()) == family.end()) continue;
-    for (const std::size_t effect : family) add(effect);
+    for (const std::size_t effect : family) {
+      // A refit that is far behind has told them apart.
+      const auto own =
+          std::ranges::find(diagnosis.refits, std::vector<std::size_t>{effect}, &Refit::effects);
+      const bool apart =
+          own != diagnosis.refits.end() && own->deviance - best.deviance >= close_deviances;
+      if (!apart) add(effect);
+    }
   }
   return names;
 }
@@ -85,7 +90,20 @@ void conclude_adequate(Diagnosis& diagnosis) {
   if (!open.empty()) diagnosis.sentence += " They cannot test: " + open + ".";
 }
 
+/// Effects that seemed to be asked for, until another explanation did better.
+void retract(Diagnosis& diagnosis, const std::vector<std::size_t>& but) {
+  for (std::size_t k = 0; k < diagnosis.effects.size(); ++k) {
+    EffectStatus& status = diagnosis.effects[k].status;
+    if (std::ranges::find(but, k) != but.end()) {
+      status = EffectStatus::supported;
+    } else if (status == EffectStatus::supported) {
+      status = EffectStatus::outdone;
+    }
+  }
+}
+
 void conclude_outside(Diagnosis& diagnosis, const Excuse& excuse) {
+  retract(diagnosis, {});
   diagnosis.verdict = DiagnosisVerdict::outside;
   diagnosis.grade = Grade::c;
   diagnosis.sentence =
@@ -108,8 +126,9 @@ void conclude_unexplained(Diagnosis& diagnosis) {
 
 void conclude_named(Diagnosis& diagnosis, const Excuse* excuse, double margin) {
   const Refit& best = diagnosis.refits.front();
-  diagnosis.grade = margin > close ? Grade::a : Grade::b;
+  diagnosis.grade = margin > close_deviances ? Grade::a : Grade::b;
   const std::vector<std::size_t> names = rivals(diagnosis);
+  retract(diagnosis, names);
   if (best.effects.size() > 1) {
     diagnosis.verdict = DiagnosisVerdict::pair;
     diagnosis.sentence = "Two effects are missing: " + titles(diagnosis, names, "and") + ".";
@@ -122,7 +141,7 @@ void conclude_named(Diagnosis& diagnosis, const Excuse* excuse, double margin) {
     diagnosis.verdict = DiagnosisVerdict::named;
     diagnosis.sentence = titles(diagnosis, names, "") + " is missing.";
   }
-  if (margin <= close && excuse != nullptr) {
+  if (margin <= close_deviances && excuse != nullptr) {
     diagnosis.sentence +=
         " An error of one apparatus would explain the data as well: " + describe(*excuse) + ".";
   }
@@ -147,7 +166,7 @@ void weigh(EffectFinding& finding, double information, std::size_t effects) {
   constexpr double power = 0.84;  // 80 % point of a normal
   finding.detectable = (quantile + power) * deviation;
   finding.strength_upper = std::max(0.0, std::abs(finding.strength) + one_sided * deviation);
-  if (finding.p < 0.05) {
+  if (finding.p < alpha_named) {
     finding.status = EffectStatus::supported;
   } else {
     finding.status = finding.detectable > 1.0 ? EffectStatus::not_testable : EffectStatus::excluded;
@@ -195,11 +214,14 @@ void conclude(const Calibration& calibration, Diagnosis& diagnosis) {
   }
   const Refit& best = diagnosis.refits.front();
   for (std::size_t i = 0; i < diagnosis.refits.size(); ++i) {
-    if (diagnosis.refits[i].deviance - best.deviance < close) diagnosis.plausible.push_back(i);
+    if (diagnosis.refits[i].deviance - best.deviance < close_deviances)
+      diagnosis.plausible.push_back(i);
   }
-  const double margin = excuse == nullptr ? 2.0 * close : excuse->deviance - best.deviance;
+  const double margin =
+      excuse == nullptr ? 2.0 * close_deviances : excuse->deviance - best.deviance;
   const bool pair = best.effects.size() > 1;
-  if (margin < -close && excuse->misfit_p > best.p) return conclude_outside(diagnosis, *excuse);
+  if (margin < -close_deviances && excuse->misfit_p > best.p)
+    return conclude_outside(diagnosis, *excuse);
   if (best.p < fits || (pair && margin <= -2.0)) {
     return excuse != nullptr && excuse->misfit_p >= fits ? conclude_outside(diagnosis, *excuse)
                                                          : conclude_unexplained(diagnosis);

@@ -1,9 +1,7 @@
-/// A stand-in for a suite of experiments, to measure how often a diagnosis is right: smooth made-up
-/// responses of five parameters, thirteen effects and some departures outside any catalogue. No
-/// physics: its rankings and error rates count, not its numbers.
+/// A stand-in for a suite of experiments, to measure how often a diagnosis is right: problems whose
+/// truth is known, over the made-up responses of stand_in_response.hpp.
 ///
-/// Observables are logarithms, so that noise is relative. The settings of an experiment are its
-/// condition: moisture M (%), height h (m), Froude number Fr, stress sg (kPa).
+/// Observables are logarithms, so that noise is relative.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,169 +25,9 @@
 #include "calibrator/misfit.hpp"
 #include "calibrator/search_space.hpp"
 #include "engine/random.hpp"
+#include "tests/support/stand_in_response.hpp"
 
 namespace repose::stand_in {
-
-inline constexpr std::array<std::string_view, 13> effects{"shape",
-                                                          "jkr",
-                                                          "capillary",
-                                                          "visco_e",
-                                                          "plastic_e",
-                                                          "hysteresis",
-                                                          "drag",
-                                                          "wall",
-                                                          "twist",
-                                                          "weaken",
-                                                          "moist_G",
-                                                          "moist_mu",
-                                                          "tap"};
-
-inline constexpr std::array<std::string_view, 5> outside{
-    "swelling", "breakage", "tilt_bias", "static_charge", "segregation"};
-
-/// Strengths by name; absent: none.
-using Hidden = std::map<std::string, double, std::less<>>;
-
-struct Observable {
-  std::string rig;
-  std::string kind;
-  double measured;   ///< standard error of its measurement, relative
-  double simulated;  ///< scatter of a run, relative
-};
-
-inline const std::map<std::string, Observable>& observables() {
-  static const std::map<std::string, Observable> all{
-      {"density", {"kettle", "dens", 0.008, 0.004}},
-      {"static_angle", {"tiltbox", "stat", 0.025, 0.030}},
-      {"heap_angle", {"heap", "heap", 0.030, 0.030}},
-      {"rebound", {"drop", "reb", 0.020, 0.004}},
-      {"rate", {"hopper", "rate", 0.015, 0.012}},
-      {"drawdown_angle", {"hopper", "draw", 0.030, 0.030}},
-      {"drum_angle", {"drum", "drum", 0.020, 0.015}},
-      {"stiffness", {"oedo", "stif", 0.030, 0.020}},
-      {"residual", {"oedo", "resd", 0.030, 0.030}},
-      {"wall_angle", {"plane", "wang", 0.020, 0.006}},
-  };
-  return all;
-}
-
-/// The logarithm of one observable.
-inline double response(const std::array<double, 5>& u,
-                       const Hidden& hidden,
-                       const std::string& observable,
-                       const std::map<std::string, double>& condition) {
-  const auto phi = [&](std::string_view name) {
-    const auto found = hidden.find(name);
-    return found == hidden.end() ? 0.0 : found->second;
-  };
-  const auto at = [&](const char* name) {
-    const auto found = condition.find(name);
-    return found == condition.end() ? 0.0 : found->second;
-  };
-  const auto th = [](double x) { return std::tanh(x); };
-  const double e = 0.35 + 0.55 * u[0], mu0 = 0.15 + 0.60 * u[1], mur = 0.02 + 0.28 * u[2];
-  const double s = 0.05 + 0.30 * u[3], lgG = 6.0 + 2.5 * u[4];
-  const double a = phi("shape"), hy = phi("hysteresis"), dr = phi("drag"), tp = phi("tap");
-  const double tw = phi("twist"), dw = phi("wall"), wk = phi("weaken"), ch = phi("static_charge");
-  const double sg = phi("segregation"), br = phi("breakage");
-  const double moist = at("M"), m = (moist - 10.0) / 8.0;
-  const double mu = mu0 * (1 + 0.6 * phi("moist_mu") * m);
-  const double G = std::pow(10.0, lgG - 0.55 * phi("moist_G") * m);
-  const double en = e - 0.12 * phi("moist_G") * m;
-  const double muk = mu * (1 - 0.45 * wk), muw = mu * (1 + 0.5 * dw);
-  const double t = std::max((moist - 11.0) / 7.0, 0.0);
-  const double Bo = 2.5 * phi("jkr") + 3.0 * phi("capillary") * std::pow(t, 1.3) / (1 + 0.4 * t);
-  const double bump = (a / 0.45) * std::exp(1 - a / 0.45);
-  const double pf = 0.640 - 0.060 * th(mu / 0.35) - 0.040 * th(mur / 0.12) + 0.28 * s * s +
-                    0.015 * (en - 0.6) - 0.085 * Bo / (Bo + 2.5) +
-                    0.040 * bump * (1 - 0.5 * th(mu / 0.5)) - 0.015 * a * a - 0.004 * dw -
-                    0.004 * dr - 0.006 * tw * th(mu / .4) + 0.0015 * std::pow(1e7 / G, 2.0 / 3.0) -
-                    0.008 * ch;
-  const double pfp = pf + 0.055 * tp * (0.66 - pf) / 0.08;
-  const double roll = 0.35 + 0.65 * th(mu / 0.4);
-  const std::string& kind = observables().at(observable).kind;
-  double value = 0.0;
-  if (kind == "dens") {
-    value = pfp * std::exp(-0.06 * phi("swelling") * m);
-  } else if (kind == "stat") {
-    value = 0.24 + 0.30 * th(mu / 0.45) + 0.42 * th(mur / 0.15) * roll + 0.10 * th(2.2 * a) +
-            0.15 * Bo / (1 + 0.30 * Bo) + 0.045 * tw * th(mu / 0.4) - 0.06 * (s - 0.2) +
-            0.015 * dw + 0.02 * ch;
-    value *= 1 + 0.10 * phi("tilt_bias");
-  } else if (kind == "heap") {
-    value = 0.21 + 0.28 * th(0.5 * (mu + muk) / 0.45) +
-            0.45 * th(mur / 0.13) * (0.35 + 0.65 * th(0.5 * (mu + muk) / .4)) + 0.09 * th(2.0 * a) +
-            0.10 * Bo / (1 + 0.30 * Bo) + 0.050 * tw * th(mu / 0.4) - 0.14 * (en - 0.5) -
-            0.02 * dr + 0.06 * sg;
-  } else if (kind == "reb") {
-    const double h = at("h");
-    const double v = std::sqrt(2 * 9.81 * h) * (1 - 0.06 * dr * std::min(h, 2.0) / 0.4);
-    value = en - 0.30 * phi("visco_e") * (std::pow(v, 0.2) - 1.0);
-    value *= std::pow(std::sqrt(v * v + 0.36) / 1.2, -0.25 * phi("plastic_e"));
-    value *= (1 - 0.10 * a) * (1 - 0.20 * hy) * (1 - 0.05 * dr * std::min(h, 2.0) / 0.4);
-    value = std::max(value - 0.012 * Bo / (v * v) * 0.5, 0.03);
-  } else if (kind == "rate") {
-    value = 0.58 * (pf / 0.6) * (1 - 0.25 * th(muk / 0.4)) * (1 - 0.10 * th(mur / 0.15)) *
-            (1 - 0.08 * a) * (1 - 0.13 * Bo / (1 + Bo)) * (1 - 0.06 * dr) * (1 + 0.05 * (en - .6)) *
-            (1 - 0.03 * dw) * (1 + 0.10 * (s - .2)) * (1 - 0.07 * ch) * (1 - 0.06 * sg);
-  } else if (kind == "draw") {
-    value = 0.30 + 0.32 * th(mu / 0.45) + 0.40 * th(mur / 0.15) * roll + 0.12 * th(2.2 * a) +
-            0.22 * Bo / (1 + 0.25 * Bo) + 0.040 * tw * th(mu / 0.4) + 0.02 * dw - 0.08 * sg;
-  } else if (kind == "drum") {
-    const double q = std::sqrt(at("Fr"));
-    const double mf = mu + (muk - mu) * th(0.3 + 6 * q);
-    value = 0.23 + 0.30 * th(mf / 0.45) + 0.42 * th(mur / 0.15) * (0.35 + 0.65 * th(mf / .4)) +
-            0.55 * q * (0.6 + 0.8 * th(mf / 0.5)) + 0.09 * th(2.0 * a) * (1 + 0.5 * q) +
-            0.13 * Bo / (1 + 0.30 * Bo) * (1 - 0.8 * q) + 0.040 * tw * th(mu / 0.4) -
-            0.05 * (en - 0.5) * (1 + 5 * q) + 0.02 * dw - 0.07 * dr * q;
-  } else if (kind == "stif") {
-    const double st = at("sg") / 100.0;
-    value = std::pow(G / 1e7, 2.0 / 3.0) * std::cbrt(st) * std::pow(pfp / 0.6, 3) *
-            (1 + 0.10 * th(mu / 0.4)) * (1 - 0.30 * hy * std::pow(st, 0.15)) * (1 + 0.10 * a) *
-            (1 + 0.10 * tp) * (1 - 0.20 * br * st / (1 + st));
-  } else if (kind == "resd") {
-    const double st = at("sg") / 100.0;
-    value = 0.30 + 0.30 * hy * std::pow(st, 0.1) + 0.04 * Bo / (1 + Bo) - 0.08 * tp +
-            0.10 * th(mu / 0.4) - 0.8 * (pfp - 0.58) + 0.22 * br * st / (1 + st);
-  } else {  // the plane
-    value = muw * (1 - 0.45 * wk * 0.15) + 0.015 * Bo + 0.05 * ch * (1 - m);
-  }
-  return std::log(std::max(value, 1e-4));
-}
-
-struct Reading {
-  std::string observable;
-  std::map<std::string, double> condition;
-};
-
-/// The twenty-six readings of the full study.
-inline std::vector<Reading> full_study() {
-  std::vector<Reading> all;
-  for (const double m : {10.0, 14.0, 18.0}) all.push_back({"density", {{"M", m}}});
-  for (const double m : {10.0, 14.0, 18.0}) all.push_back({"static_angle", {{"M", m}}});
-  for (const double m : {10.0, 18.0}) all.push_back({"heap_angle", {{"M", m}}});
-  for (const double h : {0.05, 0.15, 0.40}) all.push_back({"rebound", {{"M", 10.0}, {"h", h}}});
-  all.push_back({"rebound", {{"M", 18.0}, {"h", 0.15}}});
-  for (const double m : {10.0, 18.0}) all.push_back({"rate", {{"M", m}}});
-  for (const double m : {10.0, 18.0}) all.push_back({"drawdown_angle", {{"M", m}}});
-  for (const double fr : {0.002, 0.02, 0.10}) {
-    all.push_back({"drum_angle", {{"M", 10.0}, {"Fr", fr}}});
-  }
-  all.push_back({"drum_angle", {{"M", 18.0}, {"Fr", 0.02}}});
-  for (const double sg : {20.0, 100.0}) all.push_back({"stiffness", {{"M", 10.0}, {"sg", sg}}});
-  all.push_back({"stiffness", {{"M", 18.0}, {"sg", 100.0}}});
-  all.push_back({"residual", {{"M", 10.0}, {"sg", 100.0}}});
-  for (const double m : {10.0, 18.0}) all.push_back({"wall_angle", {{"M", m}}});
-  return all;
-}
-
-/// The readings at one moisture.
-inline std::vector<Reading> at_moisture(double moisture) {
-  std::vector<Reading> all = full_study();
-  std::erase_if(all, [](const Reading& reading) { return reading.condition.at("M") != 10.0; });
-  for (Reading& reading : all) reading.condition["M"] = moisture;
-  return all;
-}
 
 /// How another code would answer: an offset and slopes for every kind of observable, and a factor
 /// on the response to effects.
@@ -394,19 +230,30 @@ inline Problem make_problem(std::uint64_t seed,
   return problem;
 }
 
-inline calibrator::Diagnosis diagnose(const Problem& problem) {
-  const calibrator::DiagnosisQuestion question{problem.calibration,
-                                               problem.fit,
-                                               problem.suspects,
-                                               problem.covariance,
-                                               Eigen::VectorXd::Ones(problem.covariance.rows()),
-                                               problem.freedom};
-  return *calibrator::diagnose(question, evaluator(problem));
+/// A reading as a study has it; its value is open.
+inline calibrator::Measurement measurement_of(const Reading& reading, double noise) {
+  const Observable& observable = observables().at(reading.observable);
+  calibrator::Measurement measurement;
+  measurement.experiment = {observable.rig, {}, reading.condition};
+  measurement.observable = reading.observable;
+  measurement.standard_error = std::sqrt(1.16) * noise * observable.measured;
+  return measurement;
 }
 
-/// One effect, or effects that no study of this kind can tell apart.
-inline std::string_view class_of(std::string_view effect) {
-  return effect == "visco_e" || effect == "plastic_e" ? "e(v)" : effect;
+inline calibrator::DiagnosisQuestion question_of(const Problem& problem) {
+  const auto count = problem.covariance.rows();
+  return {problem.calibration,
+          problem.fit,
+          problem.suspects,
+          problem.covariance,
+          Eigen::VectorXd::Ones(count),
+          problem.freedom,
+          Eigen::VectorXd::Zero(count),
+          {}};
+}
+
+inline calibrator::Diagnosis diagnose(const Problem& problem) {
+  return *calibrator::diagnose(question_of(problem), evaluator(problem));
 }
 
 }  // namespace repose::stand_in

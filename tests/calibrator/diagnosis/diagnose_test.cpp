@@ -68,12 +68,7 @@ TEST_CASE("a stopped diagnosis has no answer", "[calibrator]") {
   const auto problem = stand_in::make_problem(1, {});
   std::stop_source stop;
   stop.request_stop();
-  const calibrator::DiagnosisQuestion question{problem.calibration,
-                                               problem.fit,
-                                               problem.suspects,
-                                               problem.covariance,
-                                               Eigen::VectorXd::Ones(problem.covariance.rows()),
-                                               problem.freedom};
+  const auto question = stand_in::question_of(problem);
   CHECK_FALSE(
       calibrator::diagnose(question, stand_in::evaluator(problem), stop.get_token()).has_value());
 }
