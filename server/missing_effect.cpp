@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "calibrator/comparison.hpp"
+#include "calibrator/diagnosis/objection.hpp"
 #include "engine/catalogue.hpp"
 #include "server/jobs/clock.hpp"
 #include "server/json/calibration_json.hpp"
@@ -82,18 +83,6 @@ std::string print_request(const calibrator::Tolerances& stated) {
   return to_text(Json{{"tolerances", std::move(tolerances)}});
 }
 
-/// What no run needs to tell.
-std::optional<std::string> objection(const Calibration& calibration) {
-  const auto fitted = std::ranges::count(
-      calibration.measurements, calibrator::Role::fit, &calibrator::Measurement::role);
-  if (fitted > 2 || fitted > static_cast<std::ptrdiff_t>(calibration.free.size())) {
-    return std::nullopt;
-  }
-  return "cannot be tested: " + std::to_string(fitted) + " measurement" + (fitted == 1 ? "" : "s") +
-         " and " + std::to_string(calibration.free.size()) +
-         " free parameters; add measurements of other kinds, or fix parameters";
-}
-
 std::vector<engine::Evaluation> evaluations_of(const std::vector<db::UsedEvaluation>& used) {
   std::vector<engine::Evaluation> evaluations;
   for (const db::UsedEvaluation& entry : used) {
@@ -127,9 +116,10 @@ Answer<std::string> diagnose(db::Store& store,
                              const DiagnosisEvents& events) {
   const auto own = finished(store, id);
   if (!own) return Unexpected{own.error()};
-  if (const auto why = objection(own->calibration)) {
-    return Unexpected{
-        refusal(Refusal::Kind::wrong_state, "calibration " + std::to_string(id) + " " + *why)};
+  if (const auto why = calibrator::objections(own->calibration, own->fit); !why.empty()) {
+    std::string message = "calibration " + std::to_string(id) + " cannot be diagnosed";
+    for (const std::string& objection : why) message += "; " + objection;
+    return Unexpected{refusal(Refusal::Kind::wrong_state, std::move(message))};
   }
   const std::int64_t diagnosis_id =
       store.add_diagnosis(id, print_request(stated), microseconds_now());

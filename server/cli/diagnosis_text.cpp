@@ -40,6 +40,8 @@ std::string status_of(const EffectFinding& finding, const engine::ParameterSet& 
       return "supported";
     case EffectStatus::not_testable:
       return "not testable with these data";
+    case EffectStatus::outdone:
+      return "not needed: another explanation does better";
     case EffectStatus::not_probed:
       return "not probed: " + finding.suspect.objection;
     case EffectStatus::excluded:
@@ -113,6 +115,30 @@ std::string refit_table(const Diagnosis& diagnosis) {
   return table.str();
 }
 
+/// What would settle it, by what each explanation expects of it.
+std::string next_table(const Diagnosis& diagnosis) {
+  std::vector<std::string> head{"next measurement"};
+  for (const auto& effects : diagnosis.rivals) {
+    head.push_back(effects.empty() ? "(nothing added)" : names_of(diagnosis, effects));
+  }
+  head.insert(head.end(), {"+-", "evidence"});
+  TextTable table(head);
+  for (const calibrator::NextMeasurement& next : diagnosis.next) {
+    Measurement measurement;
+    measurement.experiment = next.experiment;
+    measurement.observable = next.observable;
+    const double factor = next.unit.factor;
+    const int decimals =
+        decimals_for(next.predicted.front() / factor, next.standard_error / factor);
+    std::vector<std::string> row{label_of(measurement)};
+    for (const double value : next.predicted) row.push_back(fixed_text(value / factor, decimals));
+    row.push_back(fixed_text(next.standard_error / factor, decimals) + unit_suffix(next.unit));
+    row.push_back(fixed_text(next.evidence, 1));
+    table.row(std::move(row));
+  }
+  return table.str();
+}
+
 /// Measured against what the model says before anything is added and after the best addition.
 std::string prediction_table(const Calibration& calibration, const Diagnosis& diagnosis) {
   const calibrator::Refit* best = diagnosis.refits.empty() ? nullptr : &diagnosis.refits.front();
@@ -162,6 +188,7 @@ std::string print_diagnosis_text(std::string_view calibration, std::string_view 
             "\n\n";
   }
   text += prediction_table(*own->calibration, *result);
+  if (!result->next.empty()) text += "\n" + next_table(*result);
   for (const std::string& remark : result->remarks) text += "- " + remark + "\n";
   return text + "\n" + std::to_string(result->evaluations) +
          " evaluations beyond the calibration\n";

@@ -11,6 +11,7 @@
 #include "engine/evaluate.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/key_json.hpp"
+#include "server/json/next_measurement_json.hpp"
 #include "server/json/parameters_json.hpp"
 #include "server/json/read_key.hpp"
 
@@ -281,6 +282,7 @@ Diagnosis read_diagnosis(const Calibration& calibration, const Json& json) {
       diagnosis.families.back().push_back(effect_named(diagnosis, name));
     }
   }
+  if (json.contains("next")) read_next(json.at("next"), diagnosis);  // older ones have none
   diagnosis.evaluations = json.at("evaluations").get<int>();
   diagnosis.remarks = json.at("remarks").get<std::vector<std::string>>();
   return diagnosis;
@@ -317,6 +319,8 @@ std::string print_diagnosis(const Calibration& calibration,
   document["plausible"] = diagnosis.plausible;
   Json& families = document["families"] = Json::array();
   for (const auto& family : diagnosis.families) families.push_back(print_names(diagnosis, family));
+  Json& next = document["next"] = Json::array();
+  for (const auto& measurement : diagnosis.next) next.push_back(print_next(diagnosis, measurement));
   document["evaluations"] = diagnosis.evaluations;
   document["remarks"] = diagnosis.remarks;
   document["seed"] = calibration.seed;
