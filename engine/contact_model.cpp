@@ -239,7 +239,7 @@ double reach_of(const PairLaw& law, double reduced_radius) {
 template <std::size_t I>
 void bind_body(const ParameterSet& set, BodyLaw& law) {
   using E = std::tuple_element_t<I, AllEffects>;
-  if constexpr (BodyHook<E>) {
+  if constexpr (BodyHook<E> || LiftHook<E>) {
     static_assert(E::scope == Scope::global);
     const auto parameters = parameters_of<E>(set, {});
     law.active[I] = is_active<E>(parameters);
@@ -253,6 +253,25 @@ void body_one(const BodyLaw& law, double diameter, const Vec3& velocity, Vec3& f
   if constexpr (BodyHook<E>) {
     if (law.active[I]) force += E::body(std::get<I>(law.coefficients), diameter, velocity);
   }
+}
+
+template <std::size_t I>
+bool pulls(const BodyLaw& law) {
+  return BodyHook<std::tuple_element_t<I, AllEffects>> && law.active[I];
+}
+
+template <std::size_t I>
+bool shakes(const BodyLaw& law) {
+  return LiftHook<std::tuple_element_t<I, AllEffects>> && law.active[I];
+}
+
+template <std::size_t I>
+double lift_of(const BodyLaw& law, double time) {
+  using E = std::tuple_element_t<I, AllEffects>;
+  if constexpr (LiftHook<E>) {
+    if (law.active[I]) return E::lift(std::get<I>(law.coefficients), time);
+  }
+  return 0.0;
 }
 
 Material material_of(const ParameterSet& set, MaterialId id) {
@@ -279,9 +298,10 @@ ContactModel::ContactModel(const ParameterSet& parameters) {
   }
   const auto bodies = [&]<std::size_t... I>(std::index_sequence<I...>) {
     (bind_body<I>(parameters, body_), ...);
+    has_body_force_ = (pulls<I>(body_) || ...);
+    lifts_ = (shakes<I>(body_) || ...);
   };
   bodies(std::make_index_sequence<effect_count>{});
-  has_body_force_ = std::ranges::find(body_.active, true) != body_.active.end();
 }
 
 double ContactModel::reach(double largest_radius) const {
@@ -293,6 +313,13 @@ double ContactModel::reach(double largest_radius) const {
     fold(std::make_index_sequence<effect_count>{});
   }
   return farthest;
+}
+
+double ContactModel::lift(double time) const {
+  const auto fold = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    return (lift_of<I>(body_, time) + ...);
+  };
+  return fold(std::make_index_sequence<effect_count>{});
 }
 
 Vec3 ContactModel::body_force(double diameter, const Vec3& velocity) const {

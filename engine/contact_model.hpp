@@ -18,7 +18,7 @@ struct CoefficientsOf {
   using type = NoCoefficients;
 };
 template <class E>
-requires ContactHook<E> || LoadHook<E> || BodyHook<E>
+requires ContactHook<E> || LoadHook<E> || BodyHook<E> || LiftHook<E>
 struct CoefficientsOf<E> {
   using type = typename E::Coefficients;
 };
@@ -40,7 +40,7 @@ struct PairLaw {
   CoefficientsOfAll<AllEffects>::type coefficients;
 };
 
-/// What acts on every grain, contacts or not.
+/// What acts on every grain, contacts or not, and on the apparatus.
 struct BodyLaw {
   std::array<bool, effect_count> active{};
   CoefficientsOfAll<AllEffects>::type coefficients;
@@ -69,6 +69,10 @@ class ContactModel {
   [[nodiscard]] bool has_body_force() const { return has_body_force_; }
   /// That force on a grain with the volume of a sphere of that diameter (m), N.
   [[nodiscard]] Vec3 body_force(double diameter, const Vec3& velocity) const;
+  /// Whether the apparatus is shaken while it is filled.
+  [[nodiscard]] bool lifts() const { return lifts_; }
+  /// Its acceleration that long (s) after the filling began, upwards, m/s2.
+  [[nodiscard]] double lift(double time) const;
   /// Columns of history a contact carries; the same for all laws.
   [[nodiscard]] int history_columns() const { return history_columns_; }
 
@@ -77,6 +81,7 @@ class ContactModel {
   std::array<PairLaw, material_names.size()> laws_{};
   BodyLaw body_;
   bool has_body_force_ = false;
+  bool lifts_ = false;
   int history_columns_ = 0;
 };
 

@@ -3,12 +3,16 @@
 /// An effect is a struct in one file of effects/, admitted by one line of effects/all.hpp. It holds
 /// a `text`, a table of `fields`, its `stage` and `scope`, and at least one hook:
 ///
+///   amend      before anything is bound: `amends` names the parameter that `factor` multiplies
+///   under
+///              the experiment's conditions
 ///   populate   once, when grains are made: their sizes; of these effects one may be on
 ///   shape      once, when grains are made: the spheres of which a grain consists
 ///   prepare    once per material pair: Parameters, pair elasticity -> Coefficients
 ///   contact    each step, per block of contacts: columns in, columns out
 ///   reach      each time neighbours are sought: how far from touch it still acts, m
 ///   load       the same after the sums: what each grain receives for itself, not as one of a pair
+///   lift       each step while a vessel is filled: acceleration of the whole apparatus
 ///   body       each step, per grain, contacts or not: diameter and velocity -> force
 ///   strong     never in a run: parameters of a strong but plausible effect on such grains, where
 ///              the diagnosis probes; an effect without it is never suspected to be missing
@@ -24,6 +28,7 @@
 #include <vector>
 
 #include "engine/clump_shape.hpp"
+#include "engine/condition.hpp"
 #include "engine/contact_block.hpp"
 #include "engine/field.hpp"
 #include "engine/random.hpp"
@@ -32,10 +37,21 @@
 namespace repose::engine {
 
 /// When an effect acts; the list in effects/all.hpp is in this order.
-enum class Stage : std::uint8_t { population, dissipation, adhesion, friction, rolling, body };
+enum class Stage : std::uint8_t {
+  amendment,
+  population,
+  filling,
+  dissipation,
+  adhesion,
+  friction,
+  rolling,
+  body,
+};
 
-inline constexpr std::array<std::string_view, 6> stage_names{
+inline constexpr std::array<std::string_view, 8> stage_names{
+    "amendment",
     "population",
+    "filling",
     "dissipation",
     "adhesion",
     "friction",
@@ -54,7 +70,8 @@ struct EffectText {
   std::string_view title;
   std::string_view summary;
   std::string_view citation;
-  std::string_view family = {};  ///< effects of one family are other forms of the same physics
+  std::string_view family = {};     ///< effects of one family are other forms of the same physics
+  std::string_view condition = {};  ///< it shows only between experiments that differ in this
 };
 
 /// Elastic constants of two materials in contact (Johnson 1985, Contact Mechanics, ch. 4 and 7).
@@ -134,6 +151,18 @@ concept ShapeHook = requires(const typename E::Parameters& parameters) {
 };
 
 template <class E>
+concept AmendHook = requires(const typename E::Parameters& parameters,
+                             const Conditions& conditions) {
+  { E::amends } -> std::convertible_to<std::string_view>;
+  { E::factor(parameters, conditions) } -> std::same_as<double>;
+};
+
+template <class E>
+concept LiftHook = requires(const typename E::Coefficients& coefficients) {
+  { E::lift(coefficients, 0.0) } -> std::same_as<double>;  // s -> m/s2, upwards
+};
+
+template <class E>
 concept StrongHook = requires(const GrainScale& grains) {
   { E::strong(grains) } -> std::same_as<typename E::Parameters>;
 };
@@ -146,6 +175,7 @@ concept Effect = requires {
   E::fields;
 }
 &&sizeof(typename E::Parameters) == E::fields.size() * sizeof(double) &&
-    (ContactHook<E> || LoadHook<E> || BodyHook<E> || PopulateHook<E> || ShapeHook<E>);
+    (ContactHook<E> || LoadHook<E> || BodyHook<E> || PopulateHook<E> || ShapeHook<E> ||
+     AmendHook<E> || LiftHook<E>);
 
 }  // namespace repose::engine

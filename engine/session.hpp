@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/amendment.hpp"
 #include "engine/catalogue.hpp"
 #include "engine/experiment.hpp"
 #include "engine/result.hpp"
@@ -141,7 +142,17 @@ Evaluation conduct(const Trial& trial, const Run& run) {
   typename E::Settings settings{};
   const std::vector<double> values = resolved_settings(info, trial.experiment);
   for (std::size_t i = 0; i < E::fields.size(); ++i) settings.*E::fields[i].member = values[i];
-  Session session(trial, run);
+  Conditions conditions{};
+  for (std::size_t i = 0; i < condition_fields.size(); ++i) {
+    conditions.*condition_fields[i].member = values[E::fields.size() + i];
+  }
+  const Trial here{amended(trial.parameters, conditions), trial.experiment, trial.seed};
+  if (std::string problem = check(info, here); !problem.empty()) {
+    evaluation.outcome = Failure{
+        FailureKind::bad_input, "under the experiment's conditions " + std::move(problem), 0.0};
+    return evaluation;
+  }
+  Session session(here, run);
   if constexpr (Refuses<E>) {
     if (std::string reason = E::refuse(settings, 2.0 * session.largest_radius()); !reason.empty()) {
       evaluation.outcome = Failure{FailureKind::bad_input, std::move(reason), 0.0};

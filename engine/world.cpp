@@ -112,6 +112,16 @@ void World::turn_gravity(double rate) {
   turn_start_ = time_;
 }
 
+void World::start_shaking() {
+  shaken_ = model_.lifts();
+  shaken_since_ = time_;
+}
+
+void World::stop_shaking() {
+  if (shaken_) gravity_ = options_.gravity;
+  shaken_ = false;
+}
+
 void World::rebuild() {
   double largest = 0.0;
   for (const GrainRow& row : grains_.rows) largest = std::max(largest, row.radius);
@@ -233,6 +243,9 @@ void World::step() {
     const double angle = turn_rate_ * (time_ - turn_start_);
     const double g = norm(options_.gravity);
     gravity_ = {g * std::sin(angle), 0.0, -g * std::cos(angle)};
+  }
+  if (shaken_) {
+    gravity_ = options_.gravity - Vec3{0.0, 0.0, model_.lift(time_ - shaken_since_)};
   }
   move();
   if (walls_move_) move_walls();

@@ -55,6 +55,10 @@ class World {
   [[nodiscard]] std::span<const WallLoad> wall_loads() const { return wall_loads_; }
   /// From now on gravity turns about y, from -z towards +x: a box tilting the other way, rad/s.
   void turn_gravity(double rate);
+  /// From now on, until it is stopped, the apparatus is shaken where the model says so: seen from
+  /// it, gravity swings.
+  void start_shaking();
+  void stop_shaking();
   [[nodiscard]] const Vec3& gravity() const { return gravity_; }
 
   void step();
@@ -122,6 +126,8 @@ class World {
   double reach_ = 0.0;  ///< from touch, of the grains there are, m
   double turn_rate_ = 0.0;
   double turn_start_ = 0.0;
+  bool shaken_ = false;
+  double shaken_since_ = 0.0;
   Grains grains_;
   Clumps clumps_;
   std::vector<Surface> surfaces_;

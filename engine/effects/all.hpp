@@ -11,6 +11,8 @@
 #include "engine/effects/hysteresis.hpp"
 #include "engine/effects/jkr_adhesion.hpp"
 #include "engine/effects/log_normal_sizes.hpp"
+#include "engine/effects/moisture_friction.hpp"
+#include "engine/effects/moisture_softening.hpp"
 #include "engine/effects/own_spin_rolling_resistance.hpp"
 #include "engine/effects/plastic_restitution.hpp"
 #include "engine/effects/restitution.hpp"
@@ -18,16 +20,20 @@
 #include "engine/effects/size_spread.hpp"
 #include "engine/effects/sliding_friction.hpp"
 #include "engine/effects/tabulated_sizes.hpp"
+#include "engine/effects/tapping.hpp"
 #include "engine/effects/twisting_resistance.hpp"
 #include "engine/effects/velocity_restitution.hpp"
 #include "engine/effects/velocity_weakening.hpp"
 
 namespace repose::engine {
 
-using AllEffects = std::tuple<effects::SizeSpread,
+using AllEffects = std::tuple<effects::MoistureSoftening,
+                              effects::MoistureFriction,
+                              effects::SizeSpread,
                               effects::LogNormalSizes,
                               effects::TabulatedSizes,
                               effects::GrainShape,
+                              effects::Tapping,
                               effects::PlasticRestitution,
                               effects::Hysteresis,
                               effects::Restitution,

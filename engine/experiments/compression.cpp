@@ -226,7 +226,7 @@ Readings Compression::run(const Settings& s, Session& session) {
   return std::vector{0.75 * s.stress * *depth / (*quarter - *full), (*start - *end) / largest};
 }
 
-constexpr auto settings = infos(Compression::fields);
+constexpr auto settings = with_conditions(Compression::fields);
 
 }  // namespace
 

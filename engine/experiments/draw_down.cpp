@@ -270,7 +270,7 @@ Readings DrawDown::run(const Settings& s, Session& session) {
   return std::vector{*rate / s.width, 0.5 * (std::atan(*one) + std::atan(*other))};
 }
 
-constexpr auto settings = infos(DrawDown::fields);
+constexpr auto settings = with_conditions(DrawDown::fields);
 
 }  // namespace
 

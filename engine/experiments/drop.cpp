@@ -103,7 +103,7 @@ Readings Drop::run(const Settings& s, Session& session) {
   return std::vector{std::sqrt(apex / s.height)};
 }
 
-constexpr auto settings = infos(Drop::fields);
+constexpr auto settings = with_conditions(Drop::fields);
 
 }  // namespace
 

@@ -239,7 +239,7 @@ Readings Drum::run(const Settings& s, Session& session) {
   return readings;
 }
 
-constexpr auto settings = infos(Drum::fields);
+constexpr auto settings = with_conditions(Drum::fields);
 
 }  // namespace
 

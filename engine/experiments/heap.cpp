@@ -212,7 +212,7 @@ Readings Heap::run(const Settings& s, Session& session) {
   return read(s, session);
 }
 
-constexpr auto settings = infos(Heap::fields);
+constexpr auto settings = with_conditions(Heap::fields);
 
 }  // namespace
 

@@ -162,11 +162,15 @@ bool Kettle::overflow(const Settings& s,
     feed();
     return session.left_the_room() - before >= enough;
   };
-  return session.until(flows_over,
-                       5e-3,
-                       limit,
-                       FailureKind::did_not_fill,
-                       "the kettle did not overflow: the source has arched or run empty");
+  session.world().start_shaking();
+  const bool full =
+      session.until(flows_over,
+                    5e-3,
+                    limit,
+                    FailureKind::did_not_fill,
+                    "the kettle did not overflow: the source has arched or run empty");
+  session.world().stop_shaking();
+  return full;
 }
 
 bool Kettle::pour_from_stream(const Settings& s, Session& session) {
@@ -262,7 +266,7 @@ Readings Kettle::run(const Settings& s, Session& session) {
   return std::vector{mass_inside(s, session.world()) / volume(s)};
 }
 
-constexpr auto settings = infos(Kettle::fields);
+constexpr auto settings = with_conditions(Kettle::fields);
 
 }  // namespace
 

@@ -190,7 +190,7 @@ Readings TiltingBox::run(const Settings& s, Session& session) {
   return tilt(s, session);
 }
 
-constexpr auto settings = infos(TiltingBox::fields);
+constexpr auto settings = with_conditions(TiltingBox::fields);
 
 }  // namespace
 

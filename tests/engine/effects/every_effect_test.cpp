@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "engine/amendment.hpp"
 #include "engine/catalogue.hpp"
 #include "engine/contact_model.hpp"
 #include "engine/random.hpp"
@@ -41,9 +42,11 @@ ParameterSet without(const EffectInfo& effect) {
   return set;
 }
 
-/// A few dozen grains thrown together; returns their final state.
+/// A few dozen wet grains thrown together in a box that is being filled; returns their final state.
 std::vector<GrainRow> tumble(const ParameterSet& set, double time_step = 1e-5, int steps = 4000) {
-  World world(ContactModel(set), {.time_step = time_step, .period = {0.03, 0.03, 0}});
+  World world(ContactModel(amended(set, {.moisture = 0.2})),
+              {.time_step = time_step, .period = {0.03, 0.03, 0}});
+  world.start_shaking();
   world.change_surfaces().push_back(plane(0.0));
   world.change_surfaces().push_back(plane(0.03));
   Random random(3, Purpose::grain_position);
@@ -151,6 +154,7 @@ TEST_CASE("friction never exceeds its cap, whatever the effect beside it", "[eng
 
 TEST_CASE("a tumbling box gains no energy under any effect", "[engine]") {
   for (const EffectInfo& effect : effect_catalogue()) {
+    if (effect.stage == Stage::filling) continue;  // a shaker does work
     CAPTURE(effect.text.name);
     const auto energy = [](const std::vector<GrainRow>& rows) {
       double sum = 0.0;
