@@ -19,14 +19,17 @@ using Eigen::Index;
 
 constexpr double remarkable = 2.0;  // standard errors
 
-std::string number(double value) {
+/// So many figures, but never fewer than the digits before the point.
+std::string number(double value, int figures = 2) {
   char text[32];
-  const int length = std::snprintf(text, sizeof text, "%.2g", value);
+  const bool large = std::abs(value) >= std::pow(10.0, figures);
+  const int length = large ? std::snprintf(text, sizeof text, "%.0f", value)
+                           : std::snprintf(text, sizeof text, "%.*g", figures, value);
   return {text, static_cast<std::size_t>(length)};
 }
 
-std::string quantity(double value, const engine::Unit& unit) {
-  std::string text = number(value / unit.factor);
+std::string quantity(double value, const engine::Unit& unit, int figures = 2) {
+  std::string text = number(value / unit.factor, figures);
   return unit.symbol == "1" ? text : text + " " + std::string(unit.symbol);
 }
 
@@ -79,19 +82,6 @@ double rms(const Calibration& calibration,
     ++count;
   }
   return count == 0 ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(sum / count);
-}
-
-/// A setting's value for that measurement, the default where it is not given; NaN where it is none.
-double setting_of(const Measurement& measurement, const std::string& name) {
-  const auto given = measurement.experiment.settings.find(name);
-  if (given != measurement.experiment.settings.end()) return given->second;
-  const auto* info = engine::find_experiment(measurement.experiment.name);
-  if (info == nullptr) return std::numeric_limits<double>::quiet_NaN();
-  const std::vector<double> values = engine::resolved_settings(*info, measurement.experiment);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (info->settings[i].name == name) return values[i];
-  }
-  return std::numeric_limits<double>::quiet_NaN();
 }
 
 const engine::FieldInfo* setting_info(const Measurement& measurement, const std::string& name) {
@@ -155,30 +145,83 @@ std::optional<ResidualTrend> trend_of(const Calibration& calibration,
   return ResidualTrend{"", setting, xz / xx, xz / std::sqrt(xx)};
 }
 
-/// "restitution is 0.06 too high at 0.6 m and 0.05 too low at 0.05 m"
+std::string spoken(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+/// "0.06 too high at 600 mm (held out)"
+std::string miss_of(const Measurement& measurement,
+                    double difference,
+                    const std::vector<std::string>& conditions) {
+  std::string text = quantity(std::abs(difference), measurement.unit) +
+                     (difference > 0.0 ? " too high" : " too low");
+  for (std::size_t i = 0; i < conditions.size(); ++i) {
+    const auto* info = setting_info(measurement, conditions[i]);
+    text += i == 0 ? " at " : ", ";
+    if (conditions.size() > 1) text += spoken(conditions[i]) + " ";
+    text += quantity(
+        setting_of(measurement, conditions[i]), info != nullptr ? info->unit : engine::Unit{}, 4);
+  }
+  return measurement.role == Role::held_out ? text + " (held out)" : text;
+}
+
+/// "The model's restitution (drop) is 0.06 too high at 600 mm and 0.05 too low at 50 mm."
 std::string sentence_of(const Calibration& calibration,
                         const Group& group,
                         const std::vector<std::string>& conditions) {
-  std::string text;
+  std::vector<std::string> misses;
   for (const ComparedMeasurement* row : group) {
     if (!(std::abs(row->z) > remarkable)) continue;
-    const Measurement& measurement = calibration.measurements[row->measurement];
-    text +=
-        text.empty() ? measurement.experiment.name + " " + measurement.observable + " is " : ", ";
-    text += quantity(std::abs(row->difference), measurement.unit) +
-            (row->difference > 0.0 ? " too high" : " too low");
-    for (const std::string& condition : conditions) {
-      const auto* info = setting_info(measurement, condition);
-      text += " at " + condition + " " +
-              quantity(setting_of(measurement, condition),
-                       info != nullptr ? info->unit : engine::Unit{});
-    }
-    if (measurement.role == Role::held_out) text += " (held out)";
+    misses.push_back(
+        miss_of(calibration.measurements[row->measurement], row->difference, conditions));
   }
-  return text.empty() ? text : "The model's " + text + ".";
+  if (misses.empty()) return {};
+  const Measurement& what = calibration.measurements[group.front()->measurement];
+  std::string text =
+      "The model's " + spoken(what.observable) + " (" + spoken(what.experiment.name) + ") is ";
+  for (std::size_t i = 0; i < misses.size(); ++i) {
+    if (i > 0) text += i + 1 == misses.size() ? " and " : ", ";
+    text += misses[i];
+  }
+  return text + ".";
+}
+
+/// Whether the model fits, all measurements together.
+std::string whole_sentence(const Comparison& comparison) {
+  constexpr double unlikely = 0.05;
+  if (comparison.freedom <= 0.0) {
+    return "As many directions were learnt as measurements fitted: that the model fits says "
+           "nothing.";
+  }
+  const std::string chance = " (p " + number(comparison.p) + ")";
+  if (comparison.p >= unlikely) {
+    return comparison.sentences.empty()
+               ? "The model fits: no measurement is off by more than two standard errors" + chance +
+                     "."
+               : "Together the fitted measurements are no further off than chance has it" + chance +
+                     ".";
+  }
+  return comparison.sentences.empty() ? "No measurement alone is off by more than two standard "
+                                        "errors, but together they are "
+                                        "further off than chance has it" +
+                                            chance + ": the model does not fit."
+                                      : "The model does not fit" + chance + ".";
 }
 
 }  // namespace
+
+double setting_of(const Measurement& measurement, const std::string& name) {
+  const auto given = measurement.experiment.settings.find(name);
+  if (given != measurement.experiment.settings.end()) return given->second;
+  const auto* info = engine::find_experiment(measurement.experiment.name);
+  if (info == nullptr) return std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> values = engine::resolved_settings(*info, measurement.experiment);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (info->settings[i].name == name) return values[i];
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
 
 Comparison compare(const Calibration& calibration, const Fit& fit, const Tolerances& stated) {
   Comparison comparison;
@@ -211,14 +254,7 @@ Comparison compare(const Calibration& calibration, const Fit& fit, const Toleran
     std::string sentence = sentence_of(calibration, group, conditions);
     if (!sentence.empty()) comparison.sentences.push_back(std::move(sentence));
   }
-  if (comparison.freedom <= 0.0) {
-    comparison.sentences.emplace_back(
-        "As many directions were learnt as measurements fitted: that the model fits says nothing.");
-  } else if (comparison.sentences.empty()) {
-    comparison.sentences.emplace_back(
-        "The model fits: no measurement is off by more than two "
-        "standard errors.");
-  }
+  comparison.sentences.push_back(whole_sentence(comparison));
   return comparison;
 }
 

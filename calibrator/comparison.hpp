@@ -43,6 +43,10 @@ struct Comparison {
   std::vector<std::string> sentences;  ///< where it is off, or that it fits
 };
 
+/// A setting's value for that measurement, the default where it is not given; NaN where there is
+/// none.
+double setting_of(const Measurement& measurement, const std::string& name);
+
 Comparison compare(const Calibration& calibration, const Fit& fit, const Tolerances& stated = {});
 
 }  // namespace repose::calibrator

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "calibrator/comparison.hpp"
 #include "engine/catalogue.hpp"
 
 namespace repose::calibrator {
@@ -74,15 +75,33 @@ Suspect suspect_of(const EffectInfo& effect, const engine::GrainScale& grains) {
   return suspect;
 }
 
-/// Walls whose friction follows the grains' may have one of their own.
-void add_wall_friction(const Calibration& calibration, std::vector<Suspect>& suspects) {
-  const ParameterKey wall =
-      engine::make_key("sliding_friction.coefficient", {MaterialId::grain, MaterialId::wall});
-  const bool follows =
-      std::ranges::find(calibration.tied, wall, &Tie::key) != calibration.tied.end();
-  if (!follows) return;
+/// Why an effect that shows along a condition cannot show in these measurements; empty: it can.
+std::string lacks(const Calibration& calibration, const EffectInfo& effect) {
+  const std::string condition(effect.text.condition);
+  if (condition.empty()) return {};
+  std::set<double> values;
+  for (const Measurement& measurement : calibration.measurements) {
+    values.insert(setting_of(measurement, condition));
+  }
+  if (values.size() > 1) return {};
+  return "every measurement is at the same " + condition + "; add some at another";
+}
+
+/// Walls whose friction follows the grains', or is set equal to it, may have one of their own.
+void add_wall_friction(const Calibration& calibration,
+                       const ParameterSet& best,
+                       std::vector<Suspect>& suspects) {
+  const char* const name = "sliding_friction.coefficient";
+  const ParameterKey wall = engine::make_key(name, {MaterialId::grain, MaterialId::wall});
+  const auto own = best.get(wall);
+  const auto grains = best.get(engine::make_key(name, {MaterialId::grain, MaterialId::grain}));
+  const bool free =
+      std::ranges::find(calibration.free, wall, &FreeParameter::key) != calibration.free.end();
+  const bool tied = std::ranges::find(calibration.tied, wall, &Tie::key) != calibration.tied.end();
+  const bool equal = own && grains && *own == *grains && *own > 0.0;
+  if (free || !(tied || equal)) return;
   suspects.push_back(
-      {.name = "wall_friction",
+      {.name = std::string(own_wall_friction),
        .title = "A wall friction of its own",
        .levers = {{.key = wall, .strong = 0.5, .lower = 0.0, .upper = 2.0, .relative = true}},
        .two_sided = true});
@@ -156,8 +175,9 @@ std::vector<Suspect> suspects_of(const Calibration& calibration, const Parameter
     }
     if (families.contains(effect.text.family)) continue;  // the model has another form of it
     suspects.push_back(suspect_of(effect, grains));
+    suspects.back().objection = lacks(calibration, effect);
   }
-  if (named("wall_friction")) add_wall_friction(calibration, suspects);
+  if (named(own_wall_friction)) add_wall_friction(calibration, best, suspects);
   return suspects;
 }
 

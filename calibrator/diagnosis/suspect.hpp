@@ -7,12 +7,16 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calibrator/calibration.hpp"
 #include "engine/parameter_set.hpp"
 
 namespace repose::calibrator {
+
+/// Friction of the walls that differs from the grains': a suspect, though no effect of its own.
+inline constexpr std::string_view own_wall_friction = "wall_friction";
 
 /// A parameter that a suspect moves.
 struct Lever {
