@@ -173,6 +173,18 @@ std::vector<CalibrationRecord> Store::best_fits(const std::optional<std::string>
   return records;
 }
 
+std::vector<CalibrationRecord> Store::children(std::int64_t calibration) const {
+  const std::scoped_lock hold(state_->mutex);
+  Statement row = state_->connection.prepare(select_calibration(
+      true,
+      "WHERE CASE WHEN json_valid(request) THEN json_extract(request, '$.extends.calibration') END "
+      "= ? ORDER BY id"));
+  row.bind(calibration);
+  std::vector<CalibrationRecord> records;
+  while (row.step()) records.push_back(with_documents(row));
+  return records;
+}
+
 std::map<std::string, std::int64_t> Store::count_by_state() const {
   const std::scoped_lock hold(state_->mutex);
   Statement row =
@@ -206,6 +218,7 @@ bool Store::requeue(std::int64_t id) {
 void Store::requeue_all() {
   const std::scoped_lock hold(state_->mutex);
   state_->connection.run("UPDATE calibration SET state = 'queued' WHERE state = 'running'");
+  state_->connection.run("UPDATE diagnosis SET state = 'queued' WHERE state = 'running'");
 }
 
 void Store::set_progress(std::int64_t id, const std::string& progress) {
@@ -289,115 +302,6 @@ std::vector<UsedEvaluation> Store::used(std::int64_t calibration,
       "FROM calibration_evaluation u JOIN evaluation e ON e.key = u.key "
       "WHERE u.calibration_id = ?1 AND (?2 IS NULL OR u.ordinal > ?2) ORDER BY u.ordinal LIMIT ?3");
   row.bind(calibration).bind(after).bind(static_cast<std::int64_t>(limit));
-  std::vector<UsedEvaluation> result;
-  while (row.step()) result.push_back({row.integer(0), evaluation_of(row, 1)});
-  return result;
-}
-
-namespace {
-
-constexpr std::string_view diagnosis_columns =
-    "id, calibration_id, state, created_at, finished_at, request, progress, result, error";
-
-DiagnosisRecord diagnosis_of(const Statement& row) {
-  return {row.integer(0),
-          row.integer(1),
-          row.text(2),
-          row.integer(3),
-          row.integer_or_null(4),
-          row.text(5),
-          row.text_or_null(6),
-          row.text_or_null(7),
-          row.text_or_null(8)};
-}
-
-}  // namespace
-
-std::int64_t Store::add_diagnosis(std::int64_t calibration,
-                                  const std::string& request,
-                                  std::int64_t now) {
-  const std::scoped_lock hold(state_->mutex);
-  state_->connection
-      .prepare(
-          "INSERT INTO diagnosis (calibration_id, state, created_at, request) "
-          "VALUES (?, 'running', ?, ?)")
-      .bind(calibration)
-      .bind(now)
-      .bind(std::string_view(request))
-      .run();
-  return state_->connection.last_id();
-}
-
-std::optional<DiagnosisRecord> Store::diagnosis(std::int64_t id) const {
-  const std::scoped_lock hold(state_->mutex);
-  Statement row = state_->connection.prepare("SELECT " + std::string(diagnosis_columns) +
-                                             " FROM diagnosis WHERE id = ?");
-  row.bind(id);
-  if (!row.step()) return std::nullopt;
-  return diagnosis_of(row);
-}
-
-std::vector<DiagnosisRecord> Store::diagnoses(std::int64_t calibration) const {
-  const std::scoped_lock hold(state_->mutex);
-  Statement row =
-      state_->connection.prepare("SELECT " + std::string(diagnosis_columns) +
-                                 " FROM diagnosis WHERE calibration_id = ? ORDER BY id DESC");
-  row.bind(calibration);
-  std::vector<DiagnosisRecord> records;
-  while (row.step()) records.push_back(diagnosis_of(row));
-  return records;
-}
-
-void Store::set_diagnosis_progress(std::int64_t id, const std::string& progress) {
-  const std::scoped_lock hold(state_->mutex);
-  state_->connection
-      .prepare("UPDATE diagnosis SET progress = ? WHERE id = ? AND state IN ('queued', 'running')")
-      .bind(std::string_view(progress))
-      .bind(id)
-      .run();
-}
-
-bool Store::finish_diagnosis(std::int64_t id,
-                             std::string_view state,
-                             const std::optional<std::string>& result,
-                             const std::optional<std::string>& error,
-                             std::int64_t now) {
-  const std::scoped_lock hold(state_->mutex);
-  const auto view = [](const std::optional<std::string>& text) {
-    return text ? std::optional<std::string_view>(*text) : std::nullopt;
-  };
-  state_->connection
-      .prepare(
-          "UPDATE diagnosis SET state = ?, result = ?, error = ?, finished_at = ? "
-          "WHERE id = ? AND state IN ('queued', 'running')")
-      .bind(state)
-      .bind(view(result))
-      .bind(view(error))
-      .bind(now)
-      .bind(id)
-      .run();
-  return state_->connection.changes() == 1;
-}
-
-void Store::note_used_by_diagnosis(std::int64_t diagnosis,
-                                   std::int64_t first_ordinal,
-                                   const std::vector<std::string>& keys) {
-  const std::scoped_lock hold(state_->mutex);
-  note_keys(state_->connection,
-            "INSERT INTO diagnosis_evaluation (diagnosis_id, ordinal, key) VALUES (?, ?, ?) "
-            "ON CONFLICT DO NOTHING",
-            diagnosis,
-            first_ordinal,
-            keys);
-}
-
-std::vector<UsedEvaluation> Store::used_by_diagnosis(std::int64_t diagnosis) const {
-  const std::scoped_lock hold(state_->mutex);
-  Statement row = state_->connection.prepare(
-      "SELECT u.ordinal, e.key, e.question, e.answer, e.seconds, e.engine_version, e.created_at "
-      "FROM diagnosis_evaluation u JOIN evaluation e ON e.key = u.key "
-      "WHERE u.diagnosis_id = ? ORDER BY u.ordinal");
-  row.bind(diagnosis);
   std::vector<UsedEvaluation> result;
   while (row.step()) result.push_back({row.integer(0), evaluation_of(row, 1)});
   return result;

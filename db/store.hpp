@@ -74,6 +74,9 @@ class Store {
               const std::optional<std::string>& error,
               std::int64_t now);
 
+  /// The calibrations that add an effect to that one, oldest first.
+  [[nodiscard]] std::vector<CalibrationRecord> children(std::int64_t calibration) const;
+
   // Diagnoses of finished calibrations.
   std::int64_t add_diagnosis(std::int64_t calibration,
                              const std::string& request,
@@ -81,6 +84,12 @@ class Store {
   [[nodiscard]] std::optional<DiagnosisRecord> diagnosis(std::int64_t id) const;
   /// All of a calibration, newest first.
   [[nodiscard]] std::vector<DiagnosisRecord> diagnoses(std::int64_t calibration) const;
+  /// The oldest queued or running one of that calibration with that request, if any.
+  [[nodiscard]] std::optional<DiagnosisRecord> unfinished_diagnosis(
+      std::int64_t calibration, const std::string& request) const;
+  [[nodiscard]] std::vector<std::int64_t> queued_diagnoses() const;  ///< oldest first
+  bool start_diagnosis(std::int64_t id);                             ///< as start()
+  bool requeue_diagnosis(std::int64_t id);                           ///< as requeue()
   void set_diagnosis_progress(std::int64_t id, const std::string& progress);
   /// queued or running -> done, failed or cancelled; false where it was final already.
   bool finish_diagnosis(std::int64_t id,

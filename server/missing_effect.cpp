@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "calibrator/comparison.hpp"
@@ -14,6 +15,8 @@
 #include "server/json/evaluation_json.hpp"
 #include "server/json/fit_json.hpp"
 #include "server/json/job_json.hpp"
+#include "server/json/missing_effect_request.hpp"
+#include "server/json/place.hpp"
 #include "server/json/text.hpp"
 
 namespace repose::server {
@@ -77,10 +80,23 @@ Json print_record(const db::DiagnosisRecord& record, bool whole) {
   return json;
 }
 
+<<<<<<< HEAD
 std::string print_request(const calibrator::Tolerances& stated) {
   Json tolerances = Json::object();
   for (const auto& [observable, spread] : stated) tolerances[observable] = spread;
   return to_text(Json{{"tolerances", std::move(tolerances)}});
+=======
+/// What no run needs to tell.
+std::optional<std::string> objection(const Calibration& calibration) {
+  const auto fitted = std::ranges::count(
+      calibration.measurements, calibrator::Role::fit, &calibrator::Measurement::role);
+  if (fitted > 2 || fitted > static_cast<std::ptrdiff_t>(calibration.free.size())) {
+    return std::nullopt;
+  }
+  return "cannot be tested: " + std::to_string(fitted) + " measurement" + (fitted == 1 ? "" : "s") +
+         " and " + std::to_string(calibration.free.size()) +
+         " free parameters; add measurements of other kinds, or fix parameters";
+>>>>>>> 87756d6 (server: compare, diagnose and extend over HTTP, diagnoses as jobs)
 }
 
 std::vector<engine::Evaluation> evaluations_of(const std::vector<db::UsedEvaluation>& used) {
@@ -90,6 +106,23 @@ std::vector<engine::Evaluation> evaluations_of(const std::vector<db::UsedEvaluat
     if (trial) evaluations.push_back(parse_answer(*trial, entry.evaluation.answer));
   }
   return evaluations;
+}
+
+/// Why a model cannot be extended by that.
+Refusal no_extension(const std::vector<calibrator::Suspect>& suspects, const std::string& effect) {
+  std::vector<std::string> names;
+  for (const calibrator::Suspect& suspect : suspects) names.push_back(suspect.name);
+  if (engine::find_effect(effect) != nullptr) {
+    return refusal(
+        Refusal::Kind::wrong_state,
+        "the model has " + effect +
+            " already, or another form of it; it could be extended by: " + listed(names));
+  }
+  const Problem problem{"/effect",
+                        "there is no such effect to add" + did_you_mean(effect, names),
+                        "\"" + effect + "\"",
+                        listed(names)};
+  return {Refusal::Kind::invalid, "there is no effect " + effect, {problem}};
 }
 
 }  // namespace
@@ -108,55 +141,79 @@ Answer<std::string> compare(const db::Store& store,
       own->calibration, calibrator::compare(own->calibration, own->fit, stated), before);
 }
 
-Answer<std::string> diagnose(db::Store& store,
-                             const WorkerOptions& options,
-                             std::int64_t id,
-                             const calibrator::Tolerances& stated,
-                             const std::stop_token& stop,
-                             const DiagnosisEvents& events) {
-  const auto own = finished(store, id);
+Answer<std::int64_t> queue_diagnosis(db::Store& store,
+                                     std::int64_t calibration,
+                                     const calibrator::Tolerances& stated) {
+  const auto own = finished(store, calibration);
   if (!own) return Unexpected{own.error()};
+<<<<<<< HEAD
   if (const auto why = calibrator::objections(own->calibration, own->fit); !why.empty()) {
     std::string message = "calibration " + std::to_string(id) + " cannot be diagnosed";
     for (const std::string& objection : why) message += "; " + objection;
     return Unexpected{refusal(Refusal::Kind::wrong_state, std::move(message))};
+=======
+  if (const auto why = objection(own->calibration)) {
+    return Unexpected{refusal(Refusal::Kind::wrong_state,
+                              "calibration " + std::to_string(calibration) + " " + *why)};
+>>>>>>> 87756d6 (server: compare, diagnose and extend over HTTP, diagnoses as jobs)
   }
-  const std::int64_t diagnosis_id =
-      store.add_diagnosis(id, print_request(stated), microseconds_now());
+  const std::string request = print_diagnosis_request(stated);
+  if (const auto begun = store.unfinished_diagnosis(calibration, request)) return begun->id;
+  return store.add_diagnosis(calibration, request, microseconds_now());
+}
+
+namespace {
+
+/// Weighs a finished calibration; false where it was asked to stop.
+bool weigh(db::Store& store,
+           const WorkerOptions& options,
+           const db::DiagnosisRecord& record,
+           const std::stop_token& stop,
+           const DiagnosisEvents& events) {
+  const auto own = finished(store, record.calibration);
+  if (!own) throw std::runtime_error(own.error().message);
+  const auto stated = parse_diagnosis_request(record.request);
+  if (!stated) throw std::runtime_error(stated.error().front().message);
   Workers workers(store, options);
   std::int64_t ordinal = 0;
   bool interrupted = false;
   const calibrator::Evaluator evaluator = [&](std::span<const engine::Trial> trials) {
     auto evaluations = workers.run(trials, stop, events.trial);
-    if (!workers.interrupted()) {
-      store.note_used_by_diagnosis(diagnosis_id, ordinal, workers.used());
-    }
+    if (!workers.interrupted()) store.note_used_by_diagnosis(record.id, ordinal, workers.used());
     ordinal += static_cast<std::int64_t>(workers.used().size());
     interrupted |= workers.interrupted();
     return evaluations;
   };
   const auto observer = [&](const calibrator::DiagnosisProgress& progress) {
-    store.set_diagnosis_progress(
-        diagnosis_id,
-        to_text(Json{{"stage", progress.stage}, {"evaluations_done", progress.evaluations_done}}));
+    store.set_diagnosis_progress(record.id, print_diagnosis_progress(progress));
     if (events.progress) events.progress(progress);
   };
+  const auto question = calibrator::question_of(own->calibration, own->fit, *stated);
+  const auto result = calibrator::diagnose(question, evaluator, stop, observer);
+  if (!result || interrupted || stop.stop_requested()) return false;
+  store.finish_diagnosis(record.id,
+                         "done",
+                         print_diagnosis(own->calibration, *stated, *result),
+                         {},
+                         microseconds_now());
+  return true;
+}
+
+}  // namespace
+
+bool run_diagnosis(db::Store& store,
+                   const WorkerOptions& options,
+                   std::int64_t id,
+                   const std::stop_token& stop,
+                   const DiagnosisEvents& events) {
+  const auto record = store.diagnosis(id);
+  if (!record) return true;
   try {
-    const auto question = calibrator::question_of(own->calibration, own->fit, stated);
-    const auto result = calibrator::diagnose(question, evaluator, stop, observer);
-    if (!result || interrupted) {
-      store.finish_diagnosis(diagnosis_id, "cancelled", {}, {}, microseconds_now());
-    } else {
-      store.finish_diagnosis(diagnosis_id,
-                             "done",
-                             print_diagnosis(own->calibration, stated, *result),
-                             {},
-                             microseconds_now());
-    }
+    return weigh(store, options, *record, stop, events);
   } catch (const std::exception& problem) {
-    store.finish_diagnosis(diagnosis_id, "failed", {}, problem.what(), microseconds_now());
+    store.finish_diagnosis(id, "failed", {}, problem.what(), microseconds_now());
+    return true;
   }
-  return diagnosis(store, diagnosis_id);
 }
 
 Answer<std::string> diagnosis(const db::Store& store, std::int64_t id) {
@@ -182,28 +239,30 @@ Answer<std::string> diagnoses(const db::Store& store, std::int64_t calibration) 
 
 Answer<std::string> extension_study(const db::Store& store,
                                     std::int64_t id,
-                                    const std::string& effect) {
+                                    const std::string& effect,
+                                    std::optional<std::int64_t> diagnosis) {
   const auto own = finished(store, id);
   if (!own) return Unexpected{own.error()};
   const auto suspects = calibrator::suspects_of(own->calibration, own->fit.best);
   const auto found = std::ranges::find(suspects, effect, &calibrator::Suspect::name);
-  if (found == suspects.end()) {
-    std::string names;
-    for (const auto& suspect : suspects) names += (names.empty() ? "" : ", ") + suspect.name;
+  if (found == suspects.end()) return Unexpected{no_extension(suspects, effect)};
+  if (!found->objection.empty()) {
     return Unexpected{refusal(Refusal::Kind::wrong_state,
-                              (engine::find_effect(effect) != nullptr
-                                   ? "the model has " + effect + " already, or another form of it"
-                                   : "there is no effect " + effect) +
-                                  (names.empty() ? "" : "; it could be extended by: " + names))};
+                              effect + " cannot be weighed by this study: " + found->objection)};
   }
   Calibration child = own->calibration;
   child.name += " + " + effect;
   calibrator::extend(*found, own->fit.best, child);
   child.extends = calibrator::Extension{id, std::nullopt, effect};
   for (const db::DiagnosisRecord& record : store.diagnoses(id)) {
-    if (record.state != "done") continue;
+    if (record.state != "done" || (diagnosis && record.id != *diagnosis)) continue;
     child.extends->diagnosis = record.id;
     break;
+  }
+  if (diagnosis && !child.extends->diagnosis) {
+    return Unexpected{refusal(Refusal::Kind::wrong_state,
+                              "calibration " + std::to_string(id) + " has no finished diagnosis " +
+                                  std::to_string(*diagnosis))};
   }
   return print_calibration(child);
 }

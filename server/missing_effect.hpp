@@ -22,14 +22,19 @@ Answer<std::string> compare(const db::Store& store,
                             std::int64_t id,
                             const calibrator::Tolerances& stated);
 
-/// Runs a diagnosis here and now, and keeps it; the answer is its document. The same diagnosis
-/// asked again after an interruption takes its runs from the store.
-Answer<std::string> diagnose(db::Store& store,
-                             const WorkerOptions& options,
-                             std::int64_t id,
-                             const calibrator::Tolerances& stated,
-                             const std::stop_token& stop,
-                             const DiagnosisEvents& events);
+/// Queues a diagnosis of a calibration, or takes up an unfinished one with the same question; its
+/// number.
+Answer<std::int64_t> queue_diagnosis(db::Store& store,
+                                     std::int64_t calibration,
+                                     const calibrator::Tolerances& stated);
+
+/// Runs a diagnosis that is in the state running to its end. False where it was asked to stop
+/// before: it is running still, and asked again it takes what it has from the store.
+bool run_diagnosis(db::Store& store,
+                   const WorkerOptions& options,
+                   std::int64_t id,
+                   const std::stop_token& stop,
+                   const DiagnosisEvents& events);
 
 /// {"id","calibration","state","created_at","finished_at","request","result","error"}
 Answer<std::string> diagnosis(const db::Store& store, std::int64_t id);
@@ -37,10 +42,12 @@ Answer<std::string> diagnosis(const db::Store& store, std::int64_t id);
 Answer<std::string> diagnoses(const db::Store& store, std::int64_t calibration);
 
 /// The study that adds an effect to a finished calibration: its parameters are freed from null, and
-/// every run of the calibration and of its last diagnosis is known from the start.
+/// every run of the calibration and of that diagnosis (its last where none is named) is known from
+/// the start.
 Answer<std::string> extension_study(const db::Store& store,
                                     std::int64_t id,
-                                    const std::string& effect);
+                                    const std::string& effect,
+                                    std::optional<std::int64_t> diagnosis);
 
 /// What the runs of the calibration that this one extends tell of it.
 std::vector<calibrator::KnownRun> inherited_runs(const db::Store& store,

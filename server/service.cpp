@@ -21,6 +21,8 @@
 #include "server/json/fit_json.hpp"
 #include "server/json/job_json.hpp"
 #include "server/json/measurement_set_json.hpp"
+#include "server/json/missing_effect_request.hpp"
+#include "server/lineage.hpp"
 #include "server/measurements.hpp"
 #include "server/missing_effect.hpp"
 #include "server/nightly/continuation.hpp"
@@ -79,19 +81,28 @@ struct Service::State {
     store.requeue_all();  // what ran when the last process ended runs no more
     if (!options.run_jobs) return;
     scheduler = std::make_unique<Scheduler>(
-        [this](std::int64_t id, const std::stop_token& stop) { run_job(id, stop); });
-    for (const std::int64_t id : store.in_state("queued")) scheduler->submit(id);
+        [this](const Job& job, const std::stop_token& stop) { run_job(job, stop); });
+    for (const std::int64_t id : store.in_state("queued")) {
+      scheduler->submit({Job::Kind::calibration, id});
+    }
+    for (const std::int64_t id : store.queued_diagnoses()) {
+      scheduler->submit({Job::Kind::diagnosis, id});
+    }
     watch = std::make_unique<NightWatch>([this](const std::stop_token& stop) { look(stop); });
   }
 
-  void run_job(std::int64_t id, const std::stop_token& stop);
+  void run_job(const Job& job, const std::stop_token& stop);
+  void run_calibration(std::int64_t id, const std::stop_token& stop);
+  void run_diagnosis(std::int64_t id, const std::stop_token& stop, const DiagnosisEvents& events);
   void run(std::int64_t id,
            const Calibration& calibration,
            const std::stop_token& stop,
            const CalibrationEvents& events);
   void conclude(std::int64_t id, const Calibration& calibration, const Fit& fit);
-  bool take_cancel(std::int64_t id);
   void look(const std::stop_token& stop);
+  /// Takes a job that a user cancels from the queue, or asks it to stop where it runs.
+  Schedule::Cancelled cancel(const Job& job);
+  bool take_cancel(const Job& job);
 
   db::Store store;
   WorkerOptions worker_options;
@@ -99,8 +110,8 @@ struct Service::State {
   std::mutex mutex;
   std::optional<std::chrono::steady_clock::time_point> probed;  ///< when ready() looked last
   bool writable = false;                                        ///< as it found then
-  std::mutex nights;                                            ///< held while nights are ended
-  std::set<std::int64_t> cancelled;      ///< running ones that a user has cancelled
+  std::mutex nights;                     ///< held while nights are ended
+  std::set<Job> cancelled;               ///< running ones that a user has cancelled
   std::unique_ptr<Scheduler> scheduler;  // its thread uses all of the above
   std::unique_ptr<NightWatch> watch;     // last: its thread uses the scheduler too
 };
@@ -108,7 +119,9 @@ struct Service::State {
 /// What the clock asks for. A night that was cut off after its calibration is ended here too.
 void Service::State::look(const std::stop_token& stop) {
   try {
-    for (const std::int64_t id : begin_nights(store, Begin::due, clock())) scheduler->submit(id);
+    for (const std::int64_t id : begin_nights(store, Begin::due, clock())) {
+      scheduler->submit({Job::Kind::calibration, id});
+    }
     const std::unique_lock hold(nights, std::try_to_lock);
     if (hold.owns_lock()) end_nights(store, worker_options, stop, clock());
   } catch (const std::exception&) {
@@ -117,9 +130,20 @@ void Service::State::look(const std::stop_token& stop) {
   }
 }
 
-bool Service::State::take_cancel(std::int64_t id) {
+Schedule::Cancelled Service::State::cancel(const Job& job) {
+  {
+    // Before the job is asked to stop, so that it knows why.
+    const std::scoped_lock hold(mutex);
+    cancelled.insert(job);
+  }
+  const auto where = scheduler ? scheduler->cancel(job) : Schedule::Cancelled::unknown;
+  if (where != Schedule::Cancelled::running) take_cancel(job);
+  return where;
+}
+
+bool Service::State::take_cancel(const Job& job) {
   const std::scoped_lock hold(mutex);
-  return cancelled.erase(id) > 0;
+  return cancelled.erase(job) > 0;
 }
 
 void Service::State::conclude(std::int64_t id, const Calibration& calibration, const Fit& fit) {
@@ -164,28 +188,51 @@ void Service::State::run(std::int64_t id,
     interrupted |= stop.stop_requested() || fit.stop == calibrator::StopReason::cancelled;
     if (!interrupted) conclude(id, calibration, fit);
   } catch (const std::exception& problem) {
-    take_cancel(id);
+    take_cancel({Job::Kind::calibration, id});
     store.finish(id, "failed", {}, {}, problem.what(), microseconds_now());
     return;
   }
   if (!interrupted) return;
-  if (take_cancel(id)) {
+  if (take_cancel({Job::Kind::calibration, id})) {
     store.finish(id, "cancelled", {}, {}, {}, microseconds_now());
   } else {
     store.requeue(id);  // the process ends, not the question
   }
 }
 
-void Service::State::run_job(std::int64_t id, const std::stop_token& stop) {
+void Service::State::run_calibration(std::int64_t id, const std::stop_token& stop) {
+  const auto record = store.calibration(id);
+  if (!record || !store.start(id, microseconds_now())) return;
+  const auto calibration = parse_calibration(record->request);
+  if (!calibration) {
+    store.finish(id, "failed", {}, {}, calibration.error().front().message, microseconds_now());
+    return;
+  }
+  run(id, *calibration, stop, {});
+}
+
+/// Runs a diagnosis that is queued, and leaves it in the state it has come to.
+void Service::State::run_diagnosis(std::int64_t id,
+                                   const std::stop_token& stop,
+                                   const DiagnosisEvents& events) {
+  if (!store.start_diagnosis(id)) return;
+  const bool ended = server::run_diagnosis(store, worker_options, id, stop, events);
+  const bool unwanted = take_cancel({Job::Kind::diagnosis, id});
+  if (ended) return;
+  if (unwanted) {
+    store.finish_diagnosis(id, "cancelled", {}, {}, microseconds_now());
+  } else {
+    store.requeue_diagnosis(id);  // the process ends, not the question
+  }
+}
+
+void Service::State::run_job(const Job& job, const std::stop_token& stop) {
   try {
-    const auto record = store.calibration(id);
-    if (!record || !store.start(id, microseconds_now())) return;
-    const auto calibration = parse_calibration(record->request);
-    if (!calibration) {
-      store.finish(id, "failed", {}, {}, calibration.error().front().message, microseconds_now());
-      return;
+    if (job.kind == Job::Kind::calibration) {
+      run_calibration(job.id, stop);
+    } else {
+      run_diagnosis(job.id, stop, {});
     }
-    run(id, *calibration, stop, {});
     const std::scoped_lock hold(nights);
     end_nights(store, worker_options, stop, clock());
   } catch (const std::exception&) {
@@ -199,14 +246,18 @@ Service::~Service() = default;
 
 namespace {
 
+Refusal invalid(const std::string& what, const Problems& problems) {
+  return {Refusal::Kind::invalid,
+          what + " has " + std::to_string(problems.size()) +
+              (problems.size() == 1 ? " problem" : " problems"),
+          problems};
+}
+
 /// The study's canonical document, or what is wrong with it.
 Answer<Calibration> read_study(std::string_view study) {
   auto parsed = parse_calibration(study);
   if (parsed) return std::move(parsed).value();
-  return Unexpected{Refusal{Refusal::Kind::invalid,
-                            "the study has " + std::to_string(parsed.error().size()) +
-                                (parsed.error().size() == 1 ? " problem" : " problems"),
-                            parsed.error()}};
+  return Unexpected{invalid("the study", parsed.error())};
 }
 
 }  // namespace
@@ -221,7 +272,7 @@ Answer<std::string> Service::submit(std::string_view study) {
       db::MeasurementStore(state_->store)
           .add_calibration(
               calibration->name, request, digest(request), submission->source, microseconds_now());
-  if (state_->scheduler) state_->scheduler->submit(id);
+  if (state_->scheduler) state_->scheduler->submit({Job::Kind::calibration, id});
   return this->calibration(id);
 }
 
@@ -276,15 +327,8 @@ Answer<std::string> Service::cancel(std::int64_t id) {
                               {}}};
   };
   if (record->finished_at) return final();
-  {
-    // Before the job is asked to stop, so that it knows why.
-    const std::scoped_lock hold(state_->mutex);
-    state_->cancelled.insert(id);
-  }
-  const auto where =
-      state_->scheduler ? state_->scheduler->cancel(id) : Schedule::Cancelled::unknown;
+  const auto where = state_->cancel({Job::Kind::calibration, id});
   if (where == Schedule::Cancelled::running) return calibration(id);
-  state_->take_cancel(id);
   if (!state_->store.finish(id, "cancelled", {}, {}, {}, microseconds_now())) return final();
   return calibration(id);
 }
@@ -297,7 +341,36 @@ Answer<std::string> Service::diagnose(std::int64_t id,
                                       const calibrator::Tolerances& stated,
                                       const std::stop_token& stop,
                                       const DiagnosisEvents& events) {
-  return server::diagnose(state_->store, state_->worker_options, id, stated, stop, events);
+  const auto diagnosis_id = queue_diagnosis(state_->store, id, stated);
+  if (!diagnosis_id) return Unexpected{diagnosis_id.error()};
+  state_->run_diagnosis(*diagnosis_id, stop, events);
+  return diagnosis(*diagnosis_id);
+}
+
+Answer<std::string> Service::submit_diagnosis(std::int64_t calibration, std::string_view request) {
+  const auto stated = parse_diagnosis_request(request);
+  if (!stated) return Unexpected{invalid("the request", stated.error())};
+  const auto id = queue_diagnosis(state_->store, calibration, *stated);
+  if (!id) return Unexpected{id.error()};
+  if (state_->scheduler) state_->scheduler->submit({Job::Kind::diagnosis, *id});
+  return diagnosis(*id);
+}
+
+Answer<std::string> Service::cancel_diagnosis(std::int64_t id) {
+  const auto record = state_->store.diagnosis(id);
+  if (!record) return diagnosis(id);
+  const auto ended = [&](const std::string& state) -> Answer<std::string> {
+    return Unexpected{Refusal{Refusal::Kind::wrong_state,
+                              "diagnosis " + std::to_string(id) + " has ended: it is " + state,
+                              {}}};
+  };
+  if (record->finished_at) return ended(record->state);
+  const auto where = state_->cancel({Job::Kind::diagnosis, id});
+  if (where != Schedule::Cancelled::running &&
+      !state_->store.finish_diagnosis(id, "cancelled", {}, {}, microseconds_now())) {
+    return ended(state_->store.diagnosis(id)->state);
+  }
+  return diagnosis(id);
 }
 
 Answer<std::string> Service::diagnosis(std::int64_t id) const {
@@ -308,8 +381,21 @@ Answer<std::string> Service::diagnoses(std::int64_t calibration) const {
   return server::diagnoses(state_->store, calibration);
 }
 
-Answer<std::string> Service::extension_study(std::int64_t id, const std::string& effect) const {
-  return server::extension_study(state_->store, id, effect);
+Answer<std::string> Service::extension_study(std::int64_t id,
+                                             const std::string& effect,
+                                             std::optional<std::int64_t> diagnosis) const {
+  return server::extension_study(state_->store, id, effect, diagnosis);
+}
+
+Answer<std::string> Service::extend(std::int64_t id, std::string_view request) {
+  const auto wanted = parse_extension_request(request);
+  if (!wanted) return Unexpected{invalid("the request", wanted.error())};
+  const auto study = extension_study(id, wanted->effect, wanted->diagnosis);
+  return study ? submit(*study) : study;
+}
+
+Answer<std::string> Service::lineage(std::int64_t id) const {
+  return server::lineage(state_->store, id);
 }
 
 Answer<std::string> Service::export_fit(std::int64_t id, std::string_view format) const {

@@ -107,10 +107,21 @@ class Service {
                                const calibrator::Tolerances& stated,
                                const std::stop_token& stop,
                                const DiagnosisEvents& events);
+  /// Queues a diagnosis of a finished calibration; the answer is its document. `request`:
+  /// {"tolerances"}.
+  Answer<std::string> submit_diagnosis(std::int64_t calibration, std::string_view request);
   [[nodiscard]] Answer<std::string> diagnosis(std::int64_t id) const;
   [[nodiscard]] Answer<std::string> diagnoses(std::int64_t calibration) const;
-  [[nodiscard]] Answer<std::string> extension_study(std::int64_t id,
-                                                    const std::string& effect) const;
+  Answer<std::string> cancel_diagnosis(std::int64_t id);
+  [[nodiscard]] Answer<std::string> extension_study(
+      std::int64_t id,
+      const std::string& effect,
+      std::optional<std::int64_t> diagnosis = std::nullopt) const;
+  /// Queues the calibration that adds an effect to that one's model; the answer is its document.
+  /// `request`: {"effect", "diagnosis"}.
+  Answer<std::string> extend(std::int64_t id, std::string_view request);
+  /// {"asked","items":[...]}: the calibrations that come from the same one, parents first.
+  [[nodiscard]] Answer<std::string> lineage(std::int64_t id) const;
 
   // Measurements that users keep, and the fits of a material: see server/measurements.hpp.
   Answer<std::string> put_measurement_set(const std::string& name,

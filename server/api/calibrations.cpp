@@ -2,30 +2,13 @@
 #include <string>
 
 #include "server/api/handlers.hpp"
-#include "server/api/problem.hpp"
 #include "server/api/query.hpp"
-#include "server/json/text.hpp"
-#include "server/service.hpp"
+#include "server/api/reply.hpp"
 
 namespace repose::server::handlers {
 
-namespace {
-
-Reply reply_of(const Answer<std::string>& answer, int status) {
-  if (!answer) return problem_reply(answer.error());
-  return {.status = status, .body = *answer};
-}
-
-}  // namespace
-
 Reply submit_calibration(Service& service, const Request& request) {
-  const auto answer = service.submit(request.body);
-  Reply reply = reply_of(answer, 202);
-  if (!answer) return reply;
-  if (const auto id = whole_member(*answer, "id")) {
-    reply.headers.emplace_back("Location", "/v1/calibrations/" + std::to_string(*id));
-  }
-  return reply;
+  return accepted(service.submit(request.body), "/v1/calibrations");
 }
 
 Reply list_calibrations(Service& service, const Request& request) {

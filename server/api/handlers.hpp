@@ -20,6 +20,13 @@ Reply list_measurement_sets(Service& service, const Request& request);
 Reply get_measurement_set(Service& service, const Request& request);
 Reply put_measurement_set(Service& service, const Request& request);
 Reply list_fits(Service& service, const Request& request);
+Reply get_comparison(Service& service, const Request& request);
+Reply submit_diagnosis(Service& service, const Request& request);
+Reply list_diagnoses(Service& service, const Request& request);
+Reply get_diagnosis(Service& service, const Request& request);
+Reply cancel_diagnosis(Service& service, const Request& request);
+Reply extend_calibration(Service& service, const Request& request);
+Reply get_lineage(Service& service, const Request& request);
 
 Reply get_catalogue(Service& service, const Request& request);
 Reply get_openapi(Service& service, const Request& request);

@@ -47,7 +47,7 @@ constexpr std::string_view json = "application/json", stream = "text/event-strea
                            table_form = "text/csv";
 
 // clang-format off
-constexpr std::array<Route, 29> table{{
+constexpr std::array<Route, 36> table{{
     {"POST", "/v1/calibrations", "submitCalibration", "Queue a calibration.",
      "submission", 202, "calibration_document", {}, handlers::submit_calibration},
     {"GET", "/v1/calibrations", "listCalibrations", "List calibrations, newest first.",
@@ -72,6 +72,20 @@ constexpr std::array<Route, 29> table{{
      "measurement_set_content", 200, "measurement_set", table_fields, handlers::put_measurement_set, json, {}, table_form},
     {"GET", "/v1/fits", "listFits", "Get fits with their intervals, what they leave open, and where they are from.",
      "", 200, "fit_list", fit_fields, handlers::list_fits},
+    {"GET", "/v1/calibrations/{id}/comparison", "getComparison", "Compare a finished calibration with its measurements.",
+     "", 200, "comparison", {}, handlers::get_comparison},
+    {"POST", "/v1/calibrations/{id}/diagnoses", "submitDiagnosis", "Queue a diagnosis: which effect its model lacks.",
+     "diagnosis_request", 202, "diagnosis_document", {}, handlers::submit_diagnosis},
+    {"GET", "/v1/calibrations/{id}/diagnoses", "listDiagnoses", "List its diagnoses, newest first.",
+     "", 200, "diagnosis_list", {}, handlers::list_diagnoses},
+    {"POST", "/v1/calibrations/{id}/extensions", "extendCalibration", "Queue the calibration that adds an effect to its model.",
+     "extension_request", 202, "calibration_document", {}, handlers::extend_calibration},
+    {"GET", "/v1/calibrations/{id}/lineage", "getLineage", "Get the calibrations that add effects to one another.",
+     "", 200, "lineage", {}, handlers::get_lineage},
+    {"GET", "/v1/diagnoses/{id}", "getDiagnosis", "Get a diagnosis: state, progress, result.",
+     "", 200, "diagnosis_document", {}, handlers::get_diagnosis},
+    {"DELETE", "/v1/diagnoses/{id}", "cancelDiagnosis", "Cancel a diagnosis that is not finished.",
+     "", 202, "diagnosis_document", {}, handlers::cancel_diagnosis},
     {"GET", "/v1/best-fits", "listBestFits", "Get the best fit of every study, or of one.",
      "", 200, "best_fit_list", best_fit_fields, handlers::list_best_fits},
     {"GET", "/v1/catalogue", "getCatalogue", "Get effects, experiments, material properties and units.",

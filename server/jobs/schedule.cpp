@@ -4,12 +4,12 @@
 
 namespace repose::server {
 
-void Schedule::submit(std::int64_t id) {
-  if (running_ == id || std::ranges::find(waiting_, id) != waiting_.end()) return;
-  waiting_.push_back(id);
+void Schedule::submit(Job job) {
+  if (running_ == job || std::ranges::find(waiting_, job) != waiting_.end()) return;
+  waiting_.push_back(job);
 }
 
-std::optional<std::int64_t> Schedule::next() {
+std::optional<Job> Schedule::next() {
   if (!ready()) return std::nullopt;
   running_ = waiting_.front();
   waiting_.pop_front();
@@ -18,9 +18,9 @@ std::optional<std::int64_t> Schedule::next() {
 
 void Schedule::finished() { running_.reset(); }
 
-Schedule::Cancelled Schedule::cancel(std::int64_t id) {
-  if (running_ == id) return Cancelled::running;
-  const auto found = std::ranges::find(waiting_, id);
+Schedule::Cancelled Schedule::cancel(Job job) {
+  if (running_ == job) return Cancelled::running;
+  const auto found = std::ranges::find(waiting_, job);
   if (found == waiting_.end()) return Cancelled::unknown;
   waiting_.erase(found);
   return Cancelled::waiting;

@@ -1,31 +1,41 @@
-/// Schedule: which calibrations wait, and which runs. A value: no threads, no clock, no store.
+/// Schedule: which jobs wait, and which runs. A value: no threads, no clock, no store.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <deque>
 #include <optional>
 
 namespace repose::server {
 
+/// A calibration or a diagnosis that is to be run.
+struct Job {
+  enum class Kind : std::uint8_t { calibration, diagnosis };
+  Kind kind = Kind::calibration;
+  std::int64_t id = 0;
+
+  auto operator<=>(const Job&) const = default;
+};
+
 class Schedule {
  public:
-  /// Puts a calibration at the end of the queue; one that waits or runs already stays where it is.
-  void submit(std::int64_t id);
+  /// Puts a job at the end of the queue; one that waits or runs already stays where it is.
+  void submit(Job job);
   /// The next one to run, which runs from now on; none while one runs.
-  std::optional<std::int64_t> next();
+  std::optional<Job> next();
   /// The running one has ended.
   void finished();
 
   enum class Cancelled : std::uint8_t { waiting, running, unknown };
   /// Takes a waiting one out; a running one must be asked to stop.
-  Cancelled cancel(std::int64_t id);
+  Cancelled cancel(Job job);
 
-  [[nodiscard]] std::optional<std::int64_t> running() const { return running_; }
+  [[nodiscard]] std::optional<Job> running() const { return running_; }
   [[nodiscard]] bool ready() const { return !running_ && !waiting_.empty(); }
 
  private:
-  std::deque<std::int64_t> waiting_;
-  std::optional<std::int64_t> running_;
+  std::deque<Job> waiting_;
+  std::optional<Job> running_;
 };
 
 }  // namespace repose::server

@@ -4,8 +4,8 @@
 
 namespace repose::server {
 
-Scheduler::Scheduler(Job job)
-    : job_(std::move(job)), thread_([this](const std::stop_token& stop) { obey(stop); }) {}
+Scheduler::Scheduler(Runner run)
+    : run_(std::move(run)), thread_([this](const std::stop_token& stop) { obey(stop); }) {}
 
 Scheduler::~Scheduler() {
   thread_.request_stop();
@@ -13,17 +13,17 @@ Scheduler::~Scheduler() {
   running_.request_stop();
 }
 
-void Scheduler::submit(std::int64_t id) {
+void Scheduler::submit(Job job) {
   {
     const std::scoped_lock hold(mutex_);
-    schedule_.submit(id);
+    schedule_.submit(job);
   }
   changed_.notify_all();
 }
 
-Schedule::Cancelled Scheduler::cancel(std::int64_t id) {
+Schedule::Cancelled Scheduler::cancel(Job job) {
   const std::scoped_lock hold(mutex_);
-  const Schedule::Cancelled result = schedule_.cancel(id);
+  const Schedule::Cancelled result = schedule_.cancel(job);
   if (result == Schedule::Cancelled::running) running_.request_stop();
   return result;
 }
@@ -32,11 +32,11 @@ void Scheduler::obey(const std::stop_token& stop) {
   std::unique_lock hold(mutex_);
   while (changed_.wait(hold, stop, [this] { return schedule_.ready(); })) {
     if (stop.stop_requested()) return;
-    const auto id = schedule_.next();
+    const auto job = schedule_.next();
     running_ = std::stop_source();
     const std::stop_token token = running_.get_token();
     hold.unlock();
-    job_(*id, token);
+    run_(*job, token);
     hold.lock();
     schedule_.finished();
   }

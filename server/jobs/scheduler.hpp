@@ -1,8 +1,7 @@
-/// Scheduler: the thread that obeys a Schedule, one calibration at a time.
+/// Scheduler: the thread that obeys a Schedule, one job at a time.
 #pragma once
 
 #include <condition_variable>
-#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <stop_token>
@@ -14,22 +13,22 @@ namespace repose::server {
 
 class Scheduler {
  public:
-  using Job = std::function<void(std::int64_t id, const std::stop_token& stop)>;
+  using Runner = std::function<void(const Job& job, const std::stop_token& stop)>;
 
-  /// `job` runs a calibration to its end; it must not throw.
-  explicit Scheduler(Job job);
+  /// `run` runs a job to its end; it must not throw.
+  explicit Scheduler(Runner run);
   /// Asks the running job to stop and waits for it.
   ~Scheduler();
   Scheduler(const Scheduler&) = delete;
   Scheduler& operator=(const Scheduler&) = delete;
 
-  void submit(std::int64_t id);
-  Schedule::Cancelled cancel(std::int64_t id);
+  void submit(Job job);
+  Schedule::Cancelled cancel(Job job);
 
  private:
   void obey(const std::stop_token& stop);
 
-  Job job_;
+  Runner run_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
   Schedule schedule_;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "calibrator/diagnosis/suspect.hpp"
 #include "engine/catalogue.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/key_json.hpp"
@@ -55,6 +56,7 @@ void read_suspects(const Place& place, std::vector<std::string>& suspects) {
   for (const engine::EffectInfo& effect : engine::effect_catalogue()) {
     names.push_back(effect.text.name);
   }
+  names.push_back(calibrator::own_wall_friction);
   for (const Place& element : place.elements()) {
     const auto index = element.one_of(names, "effect");
     if (!index) continue;

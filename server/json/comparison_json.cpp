@@ -30,6 +30,8 @@ Json print_row(const Calibration& calibration, const calibrator::ComparedMeasure
           {"z", number_or_null(row.z)}};
 }
 
+}  // namespace
+
 Json print_fit_quality(const Comparison& comparison) {
   return {{"misfit", number_or_null(comparison.misfit)},
           {"freedom", comparison.freedom},
@@ -37,8 +39,6 @@ Json print_fit_quality(const Comparison& comparison) {
           {"fitted_z", number_or_null(comparison.fitted_z)},
           {"held_out_z", number_or_null(comparison.held_out_z)}};
 }
-
-}  // namespace
 
 std::string print_comparison(const Calibration& calibration,
                              const Comparison& comparison,

@@ -7,6 +7,7 @@
 
 #include "calibrator/calibration.hpp"
 #include "calibrator/comparison.hpp"
+#include "server/json/text.hpp"
 
 namespace repose::server {
 
@@ -14,5 +15,8 @@ namespace repose::server {
 std::string print_comparison(const calibrator::Calibration& calibration,
                              const calibrator::Comparison& comparison,
                              const std::optional<calibrator::Comparison>& before);
+
+/// {"misfit","freedom","p","fitted_z","held_out_z"}
+Json print_fit_quality(const calibrator::Comparison& comparison);
 
 }  // namespace repose::server

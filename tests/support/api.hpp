@@ -45,6 +45,9 @@ class Api {
   httplib::Response post(const std::string& body, const std::string& type = "application/json") {
     return checked(client_.Post("/v1/calibrations", body, type));
   }
+  httplib::Response post_to(const std::string& path, const std::string& body) {
+    return checked(client_.Post(path, body, "application/json"));
+  }
   httplib::Response put(const std::string& path,
                         const std::string& body,
                         const std::string& type,

@@ -1,0 +1,24 @@
+#include "server/api/reply.hpp"
+
+#include "server/api/problem.hpp"
+#include "server/json/text.hpp"
+
+namespace repose::server {
+
+Reply reply_of(const Answer<std::string>& answer, int status) {
+  if (!answer) return problem_reply(answer.error());
+  return {.status = status, .body = *answer};
+}
+
+Reply accepted(const Answer<std::string>& answer, std::string_view collection) {
+  Reply reply = reply_of(answer, 202);
+  if (!answer) return reply;
+  if (const auto id = whole_member(*answer, "id")) {
+    reply.headers.emplace_back("Location", std::string(collection) + "/" + std::to_string(*id));
+  }
+  constexpr const char* seconds = "2";  // a drop study takes about so long, others longer
+  reply.headers.emplace_back("Retry-After", seconds);
+  return reply;
+}
+
+}  // namespace repose::server

@@ -1,0 +1,159 @@
+#include "server/missing_effect.hpp"
+
+#include <string>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "server/json/lineage_json.hpp"
+#include "server/service.hpp"
+#include "tests/support/hidden_drop.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace repose;
+using namespace repose::server;
+using repose::tests::hidden_drop_study;
+using repose::tests::TemporaryFolder;
+
+namespace {
+
+using nlohmann::json;
+
+ServiceOptions in(const TemporaryFolder& folder) {
+  ServiceOptions options;
+  options.database = folder / "a.db";
+  options.workers = 2;
+  return options;
+}
+
+json read(const Answer<std::string>& answer) {
+  if (!answer) FAIL(answer.error().message);
+  return json::parse(*answer);
+}
+
+const json& named(const json& effects, const std::string& name) {
+  for (const json& effect : effects) {
+    if (effect["name"] == name) return effect;
+  }
+  FAIL("no effect " + name);
+  return effects;
+}
+
+constexpr double relaxation = 3e-5;  // s
+
+}  // namespace
+
+TEST_CASE("a speed dependence that our own engine hid is named, added, and the error falls",
+          "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  const json base = read(service.calibrate(hidden_drop_study(relaxation), {}, {}));
+  const std::int64_t id = base["id"];
+  const json before = read(service.compare(id, {}));
+  CHECK(before["p"] < 0.01);
+  CHECK(before["before"].is_null());
+
+  const json diagnosis = read(service.diagnose(id, {}, {}, {}));
+  REQUIRE(diagnosis["state"] == "done");
+  const json& result = diagnosis["result"];
+  CHECK(named(result["effects"], "velocity_restitution")["status"] == "supported");
+  const json& wet = named(result["effects"], "moisture_softening");
+  CHECK(wet["status"] == "not_probed");
+  CHECK(wet["objection"].get<std::string>().find("same moisture") != std::string::npos);
+
+  const auto study = service.extension_study(id, "velocity_restitution");
+  REQUIRE(study);
+  const json child = read(service.calibrate(*study, {}, {}));
+  REQUIRE(child["state"] == "done");
+  CHECK(child["study"]["extends"]["diagnosis"] == diagnosis["id"]);
+  const json after = read(service.compare(child["id"], {}));
+  CHECK(after["before"]["misfit"] == before["misfit"]);
+  CHECK(after["misfit"].get<double>() < 0.1 * before["misfit"].get<double>());
+  CHECK(after["held_out_z"].get<double>() < 0.5 * before["held_out_z"].get<double>());
+
+  const auto lineage = service.lineage(child["id"]);
+  REQUIRE(lineage);
+  const auto items = parse_lineage(*lineage);
+  REQUIRE(items);
+  REQUIRE(items->size() == 2);
+  CHECK(items->front().calibration == id);
+  CHECK(items->front().diagnosis == diagnosis["id"]);
+  CHECK(items->back().parent == id);
+  CHECK(items->back().effect == "velocity_restitution");
+  CHECK(*service.lineage(id) != *lineage);  // another was asked for
+  CHECK(path_through(*items, id).size() == 2);
+}
+
+TEST_CASE("a diagnosis that was stopped is taken up, and one that is cancelled is not",
+          "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  const std::int64_t id = read(service.calibrate(hidden_drop_study(relaxation), {}, {}))["id"];
+  std::stop_source source;
+  DiagnosisEvents events;
+  events.trial = [&source](std::size_t, std::size_t, bool) { source.request_stop(); };
+  const json stopped = read(service.diagnose(id, {}, source.get_token(), events));
+  CHECK(stopped["state"] == "queued");
+  const json done = read(service.diagnose(id, {}, {}, {}));
+  CHECK(done["id"] == stopped["id"]);
+  CHECK(done["state"] == "done");
+
+  const json waiting = read(service.submit_diagnosis(id, R"({"tolerances":{}})"));
+  CHECK(waiting["state"] == "queued");
+  CHECK(read(service.submit_diagnosis(id, "{}"))["id"] == waiting["id"]);
+  CHECK(read(service.cancel_diagnosis(waiting["id"]))["state"] == "cancelled");
+  const auto again = service.cancel_diagnosis(waiting["id"]);
+  REQUIRE_FALSE(again);
+  CHECK(again.error().kind == Refusal::Kind::wrong_state);
+}
+
+TEST_CASE("what cannot be diagnosed or added is refused in words, without a run", "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  const json queued = read(service.submit(hidden_drop_study(0.0)));
+  const auto kind = [](const auto& answer) {
+    REQUIRE_FALSE(answer);
+    return answer.error().kind;
+  };
+  CHECK(kind(service.submit_diagnosis(queued["id"], "{}")) == Refusal::Kind::wrong_state);
+  CHECK(kind(service.submit_diagnosis(99, "{}")) == Refusal::Kind::not_found);
+  CHECK(kind(service.compare(99, {})) == Refusal::Kind::not_found);
+  CHECK(kind(service.lineage(99)) == Refusal::Kind::not_found);
+  const std::int64_t id = read(service.calibrate(hidden_drop_study(0.0), {}, {}))["id"];
+  const auto wrong = service.submit_diagnosis(
+      id, R"({"tolerances":{"drop.restituton":0.1,"drop.restitution":2},"tolerance":1})");
+  CHECK(kind(wrong) == Refusal::Kind::invalid);
+  CHECK(wrong.error().problems.size() == 3);
+  const auto unknown = service.extend(id, R"({"effect":"velocity_restituton"})");
+  CHECK(kind(unknown) == Refusal::Kind::invalid);
+  CHECK(unknown.error().problems.front().message.find("velocity_restitution") != std::string::npos);
+  CHECK(kind(service.extend(id, R"({"effect":"restitution"})")) == Refusal::Kind::wrong_state);
+  CHECK(kind(service.extend(id, R"({"effect":"moisture_softening"})")) ==
+        Refusal::Kind::wrong_state);
+  CHECK(kind(service.extend(id, R"({"effect":"air_drag","diagnosis":7})")) ==
+        Refusal::Kind::wrong_state);
+}
+
+TEST_CASE("a queued diagnosis is run in the background, and an extension too", "[server]") {
+  const TemporaryFolder folder;
+  std::int64_t id = 0, diagnosis = 0;
+  {
+    Service service(in(folder));  // does not run jobs
+    id = read(service.calibrate(hidden_drop_study(relaxation), {}, {}))["id"];
+    diagnosis = read(service.submit_diagnosis(id, "{}"))["id"];
+  }
+  ServiceOptions options = in(folder);
+  options.run_jobs = true;
+  Service service(options);
+  const auto wait = [](const auto& state_of) {
+    std::string state;
+    for (int look = 0; look < 1000000 && state != "done" && state != "failed"; ++look) {
+      state = state_of();
+    }
+    return state;
+  };
+  CHECK(wait([&] { return read(service.diagnosis(diagnosis))["state"]; }) == "done");
+  const json child = read(service.extend(id, R"({"effect":"velocity_restitution"})"));
+  CHECK(child["study"]["extends"]["diagnosis"] == diagnosis);
+  CHECK(wait([&] { return read(service.calibration(child["id"]))["state"]; }) == "done");
+}
