@@ -18,14 +18,6 @@ std::string text_of(const Json& json) {
   return json.is_string() ? json.get<std::string>() : std::string();
 }
 
-FitQuality read_quality(const Json& json) {
-  return {number(json.at("misfit")),
-          number(json.at("freedom")),
-          number(json.at("p")),
-          number(json.at("fitted_z")),
-          number(json.at("held_out_z"))};
-}
-
 ComparisonRow read_row(const Json& json, std::size_t measurement) {
   const Json& errors = json.at("errors");
   return {measurement,
@@ -48,6 +40,14 @@ std::string trend_text(const Json& json) {
 }
 
 }  // namespace
+
+FitQuality read_quality(const Json& json) {
+  return {number(json.at("misfit")),
+          number(json.at("freedom")),
+          number(json.at("p")),
+          number(json.at("fitted_z")),
+          number(json.at("held_out_z"))};
+}
 
 engine::Result<DiagnosisRecordDocument, std::string> parse_diagnosis_record(std::string_view text) {
   ProblemList problems;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/result.hpp"
+#include "server/json/text.hpp"
 
 namespace repose::server {
 
@@ -32,6 +33,7 @@ struct ComparisonRow {
 struct FitQuality {
   double misfit = 0.0, freedom = 0.0, p = 1.0, fitted_z = 0.0, held_out_z = 0.0;
 };
+FitQuality read_quality(const Json& json);
 
 struct ComparisonDocument {
   std::vector<ComparisonRow> rows;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "server/report/axis.hpp"
 #include "server/report/chart.hpp"
 #include "server/report/label.hpp"
 #include "server/report/number_text.hpp"
@@ -18,16 +19,6 @@ using calibrator::Prediction;
 namespace {
 
 constexpr double width = 480.0;  // pixels at full size, as all below
-
-/// From values to pixels along one axis.
-struct Axis {
-  double lower, upper;  ///< values
-  double from, to;      ///< pixels
-
-  double operator()(double value) const {
-    return from + (to - from) * (value - lower) / (upper - lower);
-  }
-};
 
 double uncertainty(const Measurement& measurement) {
   return std::hypot(measurement.standard_error, measurement.allowance);

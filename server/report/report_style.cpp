@@ -10,14 +10,20 @@ const std::string_view report_style = R"css(
   --page: #f6f5f2; --sheet: #ffffff; --ink: #1d2329; --quiet: #616b75; --line: #dfe3e6;
   --accent: #1f6f9f; --good: #1b7f6b; --fair: #b7791f; --poor: #c0392b;
   --band-one: #cfe0ea; --band-two: #e8f0f5; --track: #e9ecee; --open: #a4adb5;
-  --picture: linear-gradient(#fbfbfa, #e9ebec);
+  --m0: #8d969e; --m1: #1f78b4; --m2: #12876f; --m3: #8b5fbf;
+  --low-1: #d3e5f3; --low-2: #90c0e2; --low-3: #2f7fb9; --high-1: #fbe4cf; --high-2: #f3b375;
+  --high-3: #c8641b; --heat-none: #f0f2f3;
+  --part: #1d2329; --picture: linear-gradient(#fbfbfa, #e9ebec);
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --page: #14181c; --sheet: #1c2126; --ink: #e7eaec; --quiet: #9aa5ae; --line: #323a41;
     --accent: #6bb6e0; --good: #4fc3a6; --fair: #e0ac4f; --poor: #f0776a;
     --band-one: #2f4a5b; --band-two: #24343f; --track: #2b3238; --open: #6d7780;
-    --picture: linear-gradient(#262c32, #171b1f);
+    --m0: #8f9aa4; --m1: #63b1e5; --m2: #4fc3a6; --m3: #b795e6;
+    --low-1: #22394a; --low-2: #2c5a7d; --low-3: #3f8fca; --high-1: #45331f; --high-2: #7d5423;
+    --high-3: #d57c35; --heat-none: #262c32;
+    --part: #cfd8df; --picture: linear-gradient(#262c32, #171b1f);
   }
 }
 * { box-sizing: border-box; }
@@ -33,6 +39,9 @@ h1 { margin: 2px 0 18px; font-size: clamp(22px, 3.4vw, 32px); line-height: 1.2;
      overflow-wrap: anywhere; text-wrap: balance; }
 h2 { margin: 0 0 12px; font-size: 18px; line-height: 1.3; }
 h3 { margin: 0 0 10px; font-size: 15px; }
+.verdict > p + p { margin: 0 0 8px; }
+.badge { display: inline-block; min-width: 1.6em; padding: 0 .3em; border-radius: 6px; text-align: center;
+  background: var(--accent); color: var(--sheet); }
 section, .verdict { background: var(--sheet); border: 1px solid var(--line); border-radius: 10px;
   padding: clamp(14px, 2.4vw, 26px); margin: 16px 0; }
 .verdict { border-left: 6px solid var(--good); }
@@ -63,6 +72,31 @@ td.open { color: var(--quiet); font-style: italic; }
 .pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 400px), 1fr)); gap: 28px 40px;
   margin-top: 22px; }
 .pair > * { min-width: 0; }
+.panels { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 300px), 1fr)); gap: 24px 28px;
+  margin-top: 14px; }
+.panels > * { min-width: 0; }
+.panels .chart { max-width: 360px; }
+.half { max-width: 560px; margin-top: 10px; }
+.legend { margin: 0 0 6px; font-size: 14px; color: var(--quiet); }
+.legend span { display: inline-block; margin-right: 16px; white-space: nowrap; }
+.legend i { display: inline-block; width: 12px; height: 12px; margin-right: 6px; border-radius: 50%;
+  vertical-align: -1px; }
+.legend .m0 { background: var(--m0); } .legend .m1 { background: var(--m1); }
+.legend .m2 { background: var(--m2); } .legend .m3 { background: var(--m3); }
+.legend .open { border: 2.4px solid var(--quiet); }
+.legend .part-one, .legend .part-two, .legend .part-three { border-radius: 2px; background: var(--part); }
+.legend .part-two { opacity: .6; } .legend .part-three { opacity: .3; }
+.legend .raw { border-radius: 2px; border: 1.4px solid var(--m1); }
+.legend .projected { border-radius: 2px; background: var(--m1); }
+.legend .missing { background: var(--high-3); }
+.meter { display: block; width: 72px; height: 5px; margin: 3px 0 0 auto; border-radius: 3px; background: var(--track); }
+.meter i { display: block; height: 100%; border-radius: 3px; background: var(--accent); }
+.ranking td:first-child { max-width: 430px; white-space: normal; }
+.ranking .reason { max-width: 52ch; }
+td.chip > span { padding: 1px 9px; border-radius: 10px; background: var(--track); font-size: 13px; }
+td.supported > span { background: var(--good); color: var(--sheet); font-weight: 600; }
+td.outdone > span { background: var(--band-one); }
+td.not_testable > span, td.not_probed > span { background: none; color: var(--quiet); font-style: italic; }
 figure { margin: 0; max-width: 620px; }
 figure img { display: block; width: 100%; height: auto; border-radius: 8px; background: var(--picture); }
 figcaption { margin-top: 8px; font-size: 14px; color: var(--quiet); }
@@ -110,6 +144,26 @@ figcaption b { color: var(--ink); }
 .chart .stage.pair { fill: #8b6fc0; }
 .chart .stage.search { fill: #1f8fd0; }
 .chart .stage.confirm { fill: #12a37a; }
+.chart .part { fill: var(--part); fill-opacity: .16; }
+.chart .part.two { fill-opacity: .2; }
+.chart .part.one { fill-opacity: .34; }
+.chart .m0 { --mark: var(--m0); } .chart .m1 { --mark: var(--m1); }
+.chart .m2 { --mark: var(--m2); } .chart .m3 { --mark: var(--m3); }
+.chart .model { fill: var(--mark); stroke: var(--sheet); stroke-width: 1.2; }
+.chart .model.hollow { fill: var(--sheet); stroke: var(--mark); stroke-width: 2.2; }
+.chart .model.faint { fill-opacity: .55; stroke: none; }
+.chart .model-line { fill: none; stroke: var(--mark); stroke-width: 1.6; stroke-opacity: .75; }
+.chart .floor { stroke: var(--poor); stroke-width: 1.4; stroke-dasharray: 5 4; }
+.chart .heat.none { fill: var(--heat-none); } .chart .heat.unknown { fill: none; stroke: var(--line); }
+.chart .low.d1 { fill: var(--low-1); } .chart .low.d2 { fill: var(--low-2); } .chart .low.d3 { fill: var(--low-3); }
+.chart .high.d1 { fill: var(--high-1); } .chart .high.d2 { fill: var(--high-2); }
+.chart .high.d3 { fill: var(--high-3); }
+.chart .heat.inside { fill: url(#hatch); fill-opacity: .35; }
+.chart .heat-text { font-size: 12.5px; font-variant-numeric: tabular-nums; }
+.chart .heat-text.deep { fill: #fff; font-weight: 600; }
+.chart .raw { fill: none; stroke: var(--m1); stroke-width: 1.4; }
+.chart .projected { fill: var(--m1); }
+.chart .missing { fill: var(--high-3); stroke: var(--sheet); stroke-width: 1.2; }
 .swatches { position: absolute; width: 0; height: 0; }
 details { margin-top: 14px; }
 summary { cursor: pointer; color: var(--accent); }

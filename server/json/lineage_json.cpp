@@ -1,0 +1,73 @@
+#include "server/json/lineage_json.hpp"
+
+#include <algorithm>
+
+#include "server/json/text.hpp"
+
+namespace repose::server {
+
+namespace {
+
+std::optional<std::int64_t> whole(const Json& json) {
+  return json.is_number_integer() ? std::optional(json.get<std::int64_t>()) : std::nullopt;
+}
+
+std::string text_of(const Json& json) {
+  return json.is_string() ? json.get<std::string>() : std::string();
+}
+
+LineageItem read_item(const Json& json) {
+  LineageItem item;
+  item.calibration = json.at("calibration").get<std::int64_t>();
+  item.parent = whole(json.at("parent"));
+  item.effect = text_of(json.at("effect"));
+  item.name = text_of(json.at("name"));
+  item.state = text_of(json.at("state"));
+  if (json.at("quality").is_object()) item.quality = read_quality(json.at("quality"));
+  const Json& verdict = json.at("verdict");
+  if (!verdict.is_object()) return item;
+  item.diagnosis = whole(verdict.at("diagnosis"));
+  item.verdict = text_of(verdict.at("verdict"));
+  item.grade = text_of(verdict.at("grade"));
+  return item;
+}
+
+}  // namespace
+
+engine::Result<std::vector<LineageItem>, std::string> parse_lineage(std::string_view text) {
+  ProblemList problems;
+  const auto json = parse_text(text, own_text(text), problems);
+  if (!json) return engine::Unexpected{problems.all().front().message};
+  try {
+    std::vector<LineageItem> items;
+    for (const Json& item : json->at("items")) items.push_back(read_item(item));
+    return items;
+  } catch (const Json::exception& error) {
+    return engine::Unexpected{"this is no lineage: " + std::string(error.what())};
+  }
+}
+
+std::vector<LineageItem> path_through(const std::vector<LineageItem>& items,
+                                      std::int64_t calibration) {
+  std::vector<LineageItem> path;
+  std::optional<std::int64_t> next = calibration;
+  while (next) {  // up: a parent stands before its children, so this ends
+    const auto found = std::ranges::find(items, *next, &LineageItem::calibration);
+    if (found == items.end()) break;
+    path.insert(path.begin(), *found);
+    next = found->parent;
+  }
+  next = calibration;
+  while (next) {  // down
+    const LineageItem* newest = nullptr;
+    for (const LineageItem& item : items) {
+      if (item.parent == next && item.state == "done") newest = &item;
+    }
+    if (newest != nullptr) path.push_back(*newest);
+    next = newest != nullptr ? std::optional(newest->calibration) : std::nullopt;
+  }
+  std::erase_if(path, [](const LineageItem& item) { return item.state != "done"; });
+  return path;
+}
+
+}  // namespace repose::server

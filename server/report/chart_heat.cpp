@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "server/report/chart_lineage.hpp"
+#include "server/report/label.hpp"
+#include "server/report/number_text.hpp"
+#include "server/report/svg.hpp"
+
+namespace repose::server {
+
+using calibrator::Measurement;
+
+namespace {
+
+bool held_out(const Measurement& measurement) {
+  return measurement.role == calibrator::Role::held_out;
+}
+
+std::string signed_text(double z) { return (z > 0.0 ? "+" : "") + fixed_text(z, 1); }
+
+/// "none", then three depths of "low" and of "high".
+std::string heat_style(double z) {
+  if (!std::isfinite(z)) return "heat unknown";
+  constexpr std::array<double, 3> steps{1.0, 2.0, 4.0};
+  const auto depth = std::ranges::count_if(steps, [z](double step) { return std::abs(z) > step; });
+  if (depth == 0) return "heat none";
+  return (z < 0.0 ? "heat low d" : "heat high d") + std::to_string(depth);
+}
+
+constexpr double map_width = 480.0, row_height = 25.0, group_height = 28.0, map_head = 46.0;
+
+void draw_heat_row(Svg& svg,
+                   const Lineage& lineage,
+                   std::size_t measurement,
+                   double top,
+                   double left,
+                   double column) {
+  const Measurement& what = lineage.front().calibration().measurements[measurement];
+  svg.text(12.0,
+           top + 16.5,
+           place_label(what) + (held_out(what) ? " (held out)" : ""),
+           "start",
+           "small");
+  for (std::size_t g = 0; g < lineage.size(); ++g) {
+    const auto* row = row_of(lineage[g], measurement);
+    const double z = row == nullptr ? std::nan("") : row->z;
+    const double x = left + column * static_cast<double>(g);
+    svg.rect(x + 1.5, top + 1.5, column - 3.0, row_height - 3.0, heat_style(z));
+    const bool trusted = row != nullptr && std::abs(row->difference) <= row->tolerance;
+    if (trusted) svg.rect(x + 1.5, top + 1.5, column - 3.0, row_height - 3.0, "heat inside");
+    svg.text(x + 0.5 * column,
+             top + 17.0,
+             std::isfinite(z) ? signed_text(z) : "-",
+             "middle",
+             std::abs(z) > 4.0 ? "heat-text deep" : "heat-text");
+  }
+}
+
+/// Where a model's name does not fit its column it is cut; the legend has it in full.
+std::string head_of(const Generation& generation, double column) {
+  std::string name = model_name(generation);
+  const auto most = static_cast<std::size_t>(column / 6.8);
+  if (name.size() > most) name = name.substr(0, most > 1 ? most - 1 : 1) + "…";
+  return name;
+}
+
+}  // namespace
+
+std::string model_style(std::size_t generation) {
+  constexpr std::size_t styles = 4;
+  return "m" + std::to_string(std::min(generation, styles - 1));
+}
+
+std::string model_legend(const Lineage& lineage) {
+  std::string text = "<p class=\"legend\">";
+  for (std::size_t g = 0; g < lineage.size(); ++g) {
+    if (g > 0) text += " ";
+    text += "<span><i class=\"" + model_style(g) + "\"></i>" + escaped(model_name(lineage[g])) +
+            "</span>";
+  }
+  return text + " <span><i class=\"open\"></i>hollow: held out</span></p>\n";
+}
+
+std::string residual_map(const Lineage& lineage) {
+  const auto groups = groups_by_observable(lineage.front().calibration());
+  const auto models = static_cast<double>(lineage.size());
+  const double left = std::max(170.0, map_width - 110.0 * models);
+  const double column = (map_width - left) / models;
+  double size = map_head;
+  for (const auto& group : groups) {
+    size += group_height + row_height * static_cast<double>(group.measurements.size());
+  }
+  Svg svg(map_width, size + 4.0, "Differences in standard errors, by measurement and model");
+  for (std::size_t g = 0; g < lineage.size(); ++g) {
+    const double middle = left + column * (static_cast<double>(g) + 0.5);
+    svg.text(middle, 14.0, head_of(lineage[g], column), "middle", "label small");
+    svg.text(
+        middle, 32.0, "rms " + fixed_text(lineage[g].comparison.fitted_z, 2), "middle", "quiet");
+  }
+  double top = map_head;
+  for (const auto& group : groups) {
+    svg.text(0.0, top + 17.0, group.name, "start", "label small");
+    top += group_height;
+    for (const std::size_t m : group.measurements) {
+      draw_heat_row(svg, lineage, m, top, left, column);
+      top += row_height;
+    }
+  }
+  return svg.str();
+}
+
+}  // namespace repose::server

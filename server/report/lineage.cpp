@@ -1,0 +1,69 @@
+#include "server/report/lineage.hpp"
+
+#include <algorithm>
+
+#include "engine/catalogue.hpp"
+#include "server/report/label.hpp"
+
+namespace repose::server {
+
+using calibrator::Calibration;
+using calibrator::Measurement;
+
+namespace {
+
+std::string lower_first(std::string text) {
+  if (!text.empty() && text[0] >= 'A' && text[0] <= 'Z') text[0] = static_cast<char>(text[0] + 32);
+  return text;
+}
+
+template <class Naming>
+std::vector<MeasurementGroup> grouped(const Calibration& calibration, const Naming& name_of) {
+  std::vector<MeasurementGroup> groups;
+  for (std::size_t i = 0; i < calibration.measurements.size(); ++i) {
+    const std::string name = name_of(calibration.measurements[i]);
+    auto group = std::ranges::find(groups, name, &MeasurementGroup::name);
+    if (group == groups.end()) group = groups.insert(groups.end(), {name, {}});
+    group->measurements.push_back(i);
+  }
+  return groups;
+}
+
+}  // namespace
+
+std::string model_name(const Generation& generation) {
+  const auto& extends = generation.calibration().extends;
+  if (!extends) return "base model";
+  const engine::EffectInfo* effect = engine::find_effect(extends->effect);
+  if (effect != nullptr) return "+ " + lower_first(std::string(effect->text.title));
+  std::string name = extends->effect;
+  std::ranges::replace(name, '_', ' ');
+  return "+ " + name;
+}
+
+std::vector<MeasurementGroup> groups_by_observable(const Calibration& calibration) {
+  return grouped(calibration, measurement_label);
+}
+
+std::vector<MeasurementGroup> groups_by_experiment(const Calibration& calibration) {
+  return grouped(calibration, [](const Measurement& measurement) {
+    std::string name = measurement.experiment.name;
+    std::ranges::replace(name, '_', ' ');
+    return name;
+  });
+}
+
+std::string place_label(const Measurement& measurement) {
+  std::string label = settings_label(measurement.experiment);
+  return label.empty() ? "as usual" : label;
+}
+
+const calibrator::ComparedMeasurement* row_of(const Generation& generation,
+                                              std::size_t measurement) {
+  const auto& rows = generation.comparison.rows;
+  const auto found =
+      std::ranges::find(rows, measurement, &calibrator::ComparedMeasurement::measurement);
+  return found == rows.end() ? nullptr : &*found;
+}
+
+}  // namespace repose::server
