@@ -171,6 +171,22 @@ void add_missing_effect(CLI::App& app, MissingEffectCommand& options, Work& work
       "--no-pictures", [&options] { options.pictures = false; }, "No pictures in the report");
 }
 
+void add_lineage(CLI::App& app, LineageCommand& options, Work& work) {
+  CLI::App& command =
+      *app.add_subcommand("lineage", "Models that add effects to one another, before and after");
+  command.add_option("id", options.id, "Calibration; any of them")->required();
+  add_database(command, options.database);
+  command.add_option("--report", options.report, "Write their HTML report there")
+      ->type_name("FILE");
+  add_json(command, options.form, "One JSON object on standard output");
+  command.callback([&] {
+    work = [&] {
+      if (options.database.empty()) options.database = default_database();
+      return lineage_command(options);
+    };
+  });
+}
+
 void add_report(CLI::App& app, ReportCommand& options, Work& work) {
   CLI::App& command = *app.add_subcommand("report", "Write the HTML report of a calibration");
   command.add_option("id", options.id, "Calibration")->required();
@@ -285,14 +301,49 @@ void add_bench_calibrator(CLI::App& bench, BenchCalibratorCommand& options, Work
   command.callback([&] { work = [&] { return bench_calibrator_command(options); }; });
 }
 
+void add_bench_effects(CLI::App& bench, BenchEffectsCommand& options, Work& work) {
+  CLI::App& command = *bench.add_subcommand(
+      "effects", "What each effect does to each observable of the reference grain");
+  for (const auto& effect : engine::effect_catalogue()) {
+    if (effect.strong != nullptr) options.effects.emplace_back(effect.text.name);
+  }
+  for (const auto& info : engine::experiment_catalogue()) {
+    options.experiments.emplace_back(info.name);
+  }
+  command.add_option("--effect", options.effects, "Which (default: all)")
+      ->check(CLI::IsMember(options.effects))
+      ->expected(1)
+      ->take_all();
+  command.add_option("--experiment", options.experiments, "Which (default: all)")
+      ->check(CLI::IsMember(options.experiments))
+      ->expected(1)
+      ->take_all();
+  command.add_option("--seeds", options.seeds, "Runs of each")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100));
+  add_database(command, options.database);
+  command.add_option("--workers", options.workers, "Evaluations at once")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 4096));
+  add_json(command, options.form, "JSON on standard output");
+  command.callback([&] {
+    work = [&] {
+      if (options.database.empty()) options.database = default_database();
+      return bench_effects_command(options);
+    };
+  });
+}
+
 void add_bench(CLI::App& app,
                BenchCommand& options,
+               BenchEffectsCommand& effects,
                BenchCalibratorCommand& calibrator,
                LaboratoryOptions& laboratory,
                Work& work) {
   CLI::App& bench =
       *app.add_subcommand("bench", "Measure the engine, the laboratory and the calibrator");
   bench.require_subcommand(1);
+  add_bench_effects(bench, effects, work);
   add_bench_calibrator(bench, calibrator, work);
   add_laboratory(app, bench, laboratory, work);
   CLI::App& command = *bench.add_subcommand("engine", "The engine, on beds of the reference grain");
@@ -382,12 +433,14 @@ struct Commands {
   ScheduleCommand schedule;
   ExportCommand fit_export;
   StoreCommand store;
+  LineageCommand lineage;
   ReportCommand report;
   ListCommand list;
   ShowCommand show;
   ServeCommand serve;
   TokenCommand token;
   BenchCommand bench;
+  BenchEffectsCommand bench_effects;
   BenchCalibratorCommand bench_calibrator;
   LaboratoryOptions laboratory;
   MaterialsCommand materials;
@@ -431,12 +484,18 @@ int run_command_line(int argc, const char* const* argv) {
   add_nightly(app, commands.schedule, work);
   add_export(app, commands.fit_export, work);
   add_store(app, commands.store, work);
+  add_lineage(app, commands.lineage, work);
   add_report(app, commands.report, work);
   add_serve(app, commands.serve, work);
   add_token(app, commands.token, work);
   add_list(app, commands.list, work);
   add_show(app, commands.show, work);
-  add_bench(app, commands.bench, commands.bench_calibrator, commands.laboratory, work);
+  add_bench(app,
+            commands.bench,
+            commands.bench_effects,
+            commands.bench_calibrator,
+            commands.laboratory,
+            work);
   add_materials(app, commands.materials, work);
   add_study(app, commands.study, work);
   add_catalogue(app, commands.catalogue_form, commands.schema, work);

@@ -80,25 +80,6 @@ Json print_record(const db::DiagnosisRecord& record, bool whole) {
   return json;
 }
 
-<<<<<<< HEAD
-std::string print_request(const calibrator::Tolerances& stated) {
-  Json tolerances = Json::object();
-  for (const auto& [observable, spread] : stated) tolerances[observable] = spread;
-  return to_text(Json{{"tolerances", std::move(tolerances)}});
-=======
-/// What no run needs to tell.
-std::optional<std::string> objection(const Calibration& calibration) {
-  const auto fitted = std::ranges::count(
-      calibration.measurements, calibrator::Role::fit, &calibrator::Measurement::role);
-  if (fitted > 2 || fitted > static_cast<std::ptrdiff_t>(calibration.free.size())) {
-    return std::nullopt;
-  }
-  return "cannot be tested: " + std::to_string(fitted) + " measurement" + (fitted == 1 ? "" : "s") +
-         " and " + std::to_string(calibration.free.size()) +
-         " free parameters; add measurements of other kinds, or fix parameters";
->>>>>>> 87756d6 (server: compare, diagnose and extend over HTTP, diagnoses as jobs)
-}
-
 std::vector<engine::Evaluation> evaluations_of(const std::vector<db::UsedEvaluation>& used) {
   std::vector<engine::Evaluation> evaluations;
   for (const db::UsedEvaluation& entry : used) {
@@ -146,16 +127,10 @@ Answer<std::int64_t> queue_diagnosis(db::Store& store,
                                      const calibrator::Tolerances& stated) {
   const auto own = finished(store, calibration);
   if (!own) return Unexpected{own.error()};
-<<<<<<< HEAD
   if (const auto why = calibrator::objections(own->calibration, own->fit); !why.empty()) {
-    std::string message = "calibration " + std::to_string(id) + " cannot be diagnosed";
+    std::string message = "calibration " + std::to_string(calibration) + " cannot be diagnosed";
     for (const std::string& objection : why) message += "; " + objection;
     return Unexpected{refusal(Refusal::Kind::wrong_state, std::move(message))};
-=======
-  if (const auto why = objection(own->calibration)) {
-    return Unexpected{refusal(Refusal::Kind::wrong_state,
-                              "calibration " + std::to_string(calibration) + " " + *why)};
->>>>>>> 87756d6 (server: compare, diagnose and extend over HTTP, diagnoses as jobs)
   }
   const std::string request = print_diagnosis_request(stated);
   if (const auto begun = store.unfinished_diagnosis(calibration, request)) return begun->id;

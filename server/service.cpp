@@ -110,7 +110,7 @@ struct Service::State {
   std::mutex mutex;
   std::optional<std::chrono::steady_clock::time_point> probed;  ///< when ready() looked last
   bool writable = false;                                        ///< as it found then
-  std::mutex nights;                     ///< held while nights are ended
+  std::mutex nights;                                            ///< held while nights are ended
   std::set<Job> cancelled;               ///< running ones that a user has cancelled
   std::unique_ptr<Scheduler> scheduler;  // its thread uses all of the above
   std::unique_ptr<NightWatch> watch;     // last: its thread uses the scheduler too

@@ -6,6 +6,7 @@
 
 #include "engine/catalogue.hpp"
 #include "server/cli/text_table.hpp"
+#include "server/json/effect_bench_json.hpp"
 #include "server/json/place.hpp"
 #include "server/laboratory/draft_bias.hpp"
 #include "server/laboratory/drawings.hpp"
@@ -39,6 +40,48 @@ std::string head(std::string_view fourth, std::string_view more) {
          rule + "\n";
 }
 
+/// The parameters at which an effect was measured, its first material or pair standing for all.
+std::string strength_of(const EffectBench& measured) {
+  std::string text;
+  std::string_view last;
+  for (const auto& [key, value] : measured.parameters) {
+    if (key.field == last) continue;
+    last = key.field;
+    const engine::Unit unit = engine::find_parameter(key.field)->field->unit;
+    text += (text.empty() ? "" : ", ") + key.field + " " + number_text(value / unit.factor, 3) +
+            unit_suffix(unit);
+  }
+  return text;
+}
+
+/// What the effect did in our own runs.
+std::string influence_of(std::string_view effect) {
+  const EffectBench* measured = measured_effect(effect);
+  if (measured == nullptr) return "";
+  std::string text =
+      "\nAt " + strength_of(*measured) + " on the reference grain (`" + measured_effects().command +
+      "`, draft fidelity; ± is one standard error):\n\n"
+      "| observable | without | with | change | |\n| --- | --- | --- | --- | --- |\n";
+  for (const EffectChange& change : measured->changes) {
+    const double factor = change.unit.factor;
+    const double difference = (change.with - change.without) / factor;
+    const double error = change.standard_error / factor;
+    const int decimals = decimals_for(difference, error);
+    const auto shown = [&](double value) {
+      return std::isfinite(value) ? fixed_text(value, decimals) : std::string("-");
+    };
+    const bool told = std::abs(difference) > 2.0 * error || (error == 0.0 && difference != 0.0);
+    text += "| " + change.experiment + " `" + change.observable + "`" + unit_suffix(change.unit) +
+            " | " + shown(change.without / factor) + " | " + shown(change.with / factor) + " | " +
+            shown(difference) + " ± " + shown(error) + " | " +
+            (!change.failure.empty() ? change.failure
+             : !told                 ? "no change seen"
+                     : fixed_text(100.0 * (change.with / change.without - 1.0), 1) + " %") +
+            " |\n";
+  }
+  return text;
+}
+
 std::string effect_section(const engine::EffectInfo& effect) {
   const std::string name(effect.text.name);
   std::string text = "\n### " + std::string(effect.text.title) + " (`" + name + "`)\n\n" +
@@ -48,7 +91,7 @@ std::string effect_section(const engine::EffectInfo& effect) {
                      std::string(engine::stage_names.at(static_cast<std::size_t>(effect.stage))) +
                      ". Source: " + std::string(effect.text.citation) + ".\n" + head("null", "");
   for (const FieldInfo& field : effect.fields) text += row_of(field, name + ".") + "\n";
-  return text;
+  return text + influence_of(name);
 }
 
 std::string experiment_section(const engine::ExperimentInfo& info) {

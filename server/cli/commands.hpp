@@ -100,6 +100,14 @@ struct ExportCommand {
 };
 int export_command(const ExportCommand& command);
 
+struct LineageCommand {
+  std::int64_t id = 0;
+  std::filesystem::path database;
+  std::filesystem::path report;  ///< file; empty: the models are listed
+  Form form = Form::text;
+};
+int lineage_command(const LineageCommand& command);
+
 struct ReportCommand {
   std::int64_t id = 0;
   std::filesystem::path database;
@@ -153,6 +161,16 @@ struct BenchCommand {
   Form form = Form::text;
 };
 int bench_engine_command(const BenchCommand& command);
+
+struct BenchEffectsCommand {
+  std::vector<std::string> effects;      ///< which
+  std::vector<std::string> experiments;  ///< which
+  int seeds = 2;
+  std::filesystem::path database;  ///< keeps the runs, so that it can be taken up again
+  unsigned workers = 1;
+  Form form = Form::text;
+};
+int bench_effects_command(const BenchEffectsCommand& command);
 
 struct BenchCalibratorCommand {
   std::vector<std::string> cases{"A", "B", "C", "D", "E"};

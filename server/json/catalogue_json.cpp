@@ -6,6 +6,7 @@
 #include "engine/catalogue.hpp"
 #include "engine/evaluate.hpp"
 #include "server/json/codec.hpp"
+#include "server/json/effect_bench_json.hpp"
 #include "server/laboratory/draft_bias.hpp"
 #include "server/laboratory/drawings.hpp"
 
@@ -43,10 +44,13 @@ Json print_effect(const engine::EffectInfo& effect) {
     entry["null"] = print_slot(field.null_value, field);
     parameters.push_back(std::move(entry));
   }
+  const EffectBench* measured = measured_effect(effect.text.name);
   return {{"name", effect.text.name},
           {"title", effect.text.title},
           {"summary", effect.text.summary},
           {"citation", effect.text.citation},
+          {"condition", effect.text.condition},
+          {"influence", measured != nullptr ? print_changes(*measured) : Json::array()},
           {"stage", engine::stage_names.at(static_cast<std::size_t>(effect.stage))},
           {"scope", engine::scope_names.at(static_cast<std::size_t>(effect.scope))},
           {"parameters", std::move(parameters)}};
@@ -123,6 +127,9 @@ std::string print_catalogue() {
   return to_text(Json{{"engine_version", engine::version()},
                       {"materials", print_materials()},
                       {"effects", std::move(effects)},
+                      {"influences_from",
+                       {{"command", measured_effects().command},
+                        {"engine_version", measured_effects().engine_version}}},
                       {"experiments", std::move(experiments)},
                       {"fidelities", engine::fidelity_names},
                       {"units", std::move(units)}});
