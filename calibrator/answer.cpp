@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "calibrator/misfit.hpp"
+#include "calibrator/next_measurement.hpp"
+#include "calibrator/posterior.hpp"
 #include "calibrator/uncertainty.hpp"
 
 namespace repose::calibrator {
@@ -65,6 +67,8 @@ void fill_parameters(const Outlook& outlook, const UnitPoint& best, Fit& fit) {
                               !interval.lower_at_bound && !interval.upper_at_bound});
   }
   fit.directions = std::move(learnt.directions);
+  fit.posterior = sample_posterior(outlook, best);
+  fit.next = next_measurements(outlook, best);
 }
 
 Fit failure(Ledger& ledger, std::string remark) {

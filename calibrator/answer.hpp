@@ -23,7 +23,7 @@ bool promise_kept(const Outlook& outlook, const Confirmation& confirmation);
 /// Every measurement against its confirmed prediction, and the misfit that follows.
 void fill_predictions(const Outlook& outlook, const Confirmation& confirmation, Fit& fit);
 
-/// Best values, intervals, and the directions that were learnt.
+/// Best values, intervals, the joint posterior, what was learnt and what to measure next.
 void fill_parameters(const Outlook& outlook, const UnitPoint& best, Fit& fit);
 
 /// A fit that came to nothing, and why.

@@ -9,6 +9,7 @@
 #include "calibrator/answer.hpp"
 #include "calibrator/baselines/baseline.hpp"
 #include "calibrator/design.hpp"
+#include "calibrator/draft_help.hpp"
 #include "calibrator/known_runs.hpp"
 #include "calibrator/ledger.hpp"
 #include "calibrator/misfit.hpp"
@@ -26,14 +27,12 @@ class Search {
  public:
   Search(const Calibration& calibration,
          const Evaluator& evaluator,
-         const std::stop_token& stop,
-         const ProgressObserver& observer,
-         std::span<const KnownRun> known)
+         const CalibrateOptions& options)
       : calibration_(calibration),
         plan_(make_plan(calibration)),
-        stop_(stop),
-        observer_(observer),
-        ledger_(calibration, evaluator, known) {}
+        stop_(options.stop),
+        observer_(options.observer),
+        ledger_(calibration, evaluator, options.known, options.meter) {}
 
   Fit run();
 
@@ -42,6 +41,7 @@ class Search {
 
   Fit run_baseline();
   bool start();
+  void draft();
   void replicate();
   void pair();
   void learn();
@@ -90,6 +90,7 @@ Fit Search::run() {
     if (stop_.stop_requested()) return finish(StopReason::cancelled);
     return failure(ledger_, too_few_succeeded(ledger_, succeeded(ledger_), plan_.least));
   }
+  if (!stop_.stop_requested()) draft();
   if (!stop_.stop_requested()) replicate();
   if (!stop_.stop_requested()) pair();
   learn();
@@ -143,10 +144,8 @@ bool Search::start() {
   for (std::uint64_t attempt = 0; attempt < 2 && !stop_.stop_requested(); ++attempt) {
     if (plan_.total() - plan_.start > ledger_.remaining() - plan_.start) break;
     Requests requests;
-    for (const UnitPoint& point : spread_design(static_cast<std::size_t>(plan_.start),
-                                                calibration_.free.size(),
-                                                calibration_.seed,
-                                                attempt)) {
+    for (const UnitPoint& point : spread_design(
+             ledger_.space(), static_cast<std::size_t>(plan_.start), calibration_.seed, attempt)) {
       requests.push_back({ledger_.site_at(point), 0, Level::search});
     }
     ledger_.run("start", requests);
@@ -154,6 +153,30 @@ bool Search::start() {
     if (succeeded(ledger_) >= plan_.least) return true;
   }
   return false;
+}
+
+/// Draft runs at the points and with the seeds of the start, and elsewhere where these prove that
+/// they help.
+void Search::draft() {
+  constexpr std::uint64_t draft_design = 10;  // apart from the start's
+  if (calibration_.budget.draft_runs == 0) return;
+  Requests requests;
+  for (std::size_t i = 0; i < ledger_.sites().size(); ++i) {
+    const Site& site = ledger_.sites()[i];
+    if (site.searched.empty() || static_cast<int>(requests.size()) >= plan_.start) continue;
+    requests.push_back({i, site.searched.front().replicate, Level::draft});
+  }
+  ledger_.run("draft", requests);
+  if (std::ranges::none_of(learn_draft_help(ledger_), &DraftHelp::proven)) return;
+  requests.clear();
+  for (const UnitPoint& point :
+       spread_design(ledger_.space(),
+                     static_cast<std::size_t>(calibration_.budget.draft_runs),
+                     calibration_.seed,
+                     draft_design)) {
+    requests.push_back({ledger_.site_at(point), 0, Level::draft});
+  }
+  ledger_.run("draft", requests);
 }
 
 /// Fresh seeds at the point whose single run came closest, for the scatter.
@@ -172,7 +195,8 @@ void Search::replicate() {
   const std::vector<int> freedom = ledger_.scatter(Level::search).freedom;
   if (*std::ranges::min_element(freedom) >= plan_.replicates) return;  // the scatter is known
   const int first = ledger_.fresh_replicate(base_);
-  for (int r = 0; r < plan_.replicates; ++r) requests.push_back({base_, first + r, Level::search});
+  const int count = std::min(plan_.replicates, ledger_.remaining());
+  for (int r = 0; r < count; ++r) requests.push_back({base_, first + r, Level::search});
   ledger_.run("replicate", requests);
   report("replicate");
 }
@@ -271,7 +295,7 @@ std::vector<Belief> Search::predict(const UnitPoint& point) const {
 
 /// What the emulator adds to the evaluations made since it learnt last.
 void Search::complete_history() {
-  const double best = expected_misfit(*surrogate_, targets_, recommended_);
+  const double best = expected_misfit(outlook(), recommended_);
   for (HistoryPoint& point : ledger_.history()) {
     if (!std::isnan(point.best)) continue;
     point.best = best;
@@ -294,7 +318,7 @@ void Search::report(std::string_view stage) const {
                     {},
                     {}};
   if (surrogate_) {
-    progress.misfit = expected_misfit(*surrogate_, targets_, recommended_);
+    progress.misfit = expected_misfit(outlook(), recommended_);
     for (const Belief& belief : predict(recommended_)) progress.predicted.push_back(belief.mean);
     progress.z = standardised_residuals(calibration_.measurements, progress.predicted);
     progress.best = ledger_.space().at(recommended_);
@@ -349,10 +373,8 @@ Fit Search::finish(StopReason reason) {
 
 Fit calibrate(const Calibration& calibration,
               const Evaluator& evaluator,
-              std::stop_token stop,  // NOLINT(performance-unnecessary-value-param): as declared
-              const ProgressObserver& observer,
-              std::span<const KnownRun> known) {
-  return Search(calibration, evaluator, stop, observer, known).run();
+              const CalibrateOptions& options) {
+  return Search(calibration, evaluator, options).run();
 }
 
 }  // namespace repose::calibrator

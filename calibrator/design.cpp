@@ -44,15 +44,16 @@ double smallest_distance(const std::vector<UnitPoint>& points) {
   return smallest;
 }
 
-std::vector<UnitPoint> spread_design(std::size_t count,
-                                     std::size_t dimensions,
-                                     std::uint64_t seed,
-                                     std::uint64_t index) {
+namespace {
+
+/// The one of 30 designs whose closest two points are farthest apart.
+template <class Make>
+std::vector<UnitPoint> farthest_apart(std::uint64_t index, const Make& make) {
   constexpr std::uint64_t attempts = 30;
   std::vector<UnitPoint> best;
   double best_distance = -1.0;
   for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
-    auto points = latin_hypercube(count, dimensions, seed, index * attempts + attempt);
+    std::vector<UnitPoint> points = make(index * attempts + attempt);
     const double closest = smallest_distance(points);
     if (closest > best_distance) {
       best_distance = closest;
@@ -60,6 +61,41 @@ std::vector<UnitPoint> spread_design(std::size_t count,
     }
   }
   return best;
+}
+
+}  // namespace
+
+std::vector<UnitPoint> spread_design(std::size_t count,
+                                     std::size_t dimensions,
+                                     std::uint64_t seed,
+                                     std::uint64_t index) {
+  return farthest_apart(
+      index, [&](std::uint64_t which) { return latin_hypercube(count, dimensions, seed, which); });
+}
+
+std::vector<UnitPoint> allowed_points(const SearchSpace& space,
+                                      std::size_t count,
+                                      std::uint64_t seed,
+                                      std::uint64_t index) {
+  constexpr std::uint64_t candidates = 100'000;
+  const std::uint64_t rounds =
+      std::max<std::uint64_t>(1, candidates / std::max(count, std::size_t{1}));
+  std::vector<UnitPoint> points;
+  for (std::uint64_t round = 0; round < rounds && points.size() < count; ++round) {
+    for (UnitPoint& point :
+         latin_hypercube(count, space.dimensions(), seed, index + (round << 32U))) {
+      if (points.size() < count && space.allows(point)) points.push_back(std::move(point));
+    }
+  }
+  return points;
+}
+
+std::vector<UnitPoint> spread_design(const SearchSpace& space,
+                                     std::size_t count,
+                                     std::uint64_t seed,
+                                     std::uint64_t index) {
+  return farthest_apart(
+      index, [&](std::uint64_t which) { return allowed_points(space, count, seed, which); });
 }
 
 }  // namespace repose::calibrator

@@ -25,6 +25,17 @@ std::vector<UnitPoint> spread_design(std::size_t count,
                                      std::uint64_t seed,
                                      std::uint64_t index = 0);
 
+/// The same among the points that the space's constraints allow: of each hypercube those, from as
+/// many hypercubes as it takes. Fewer than `count` where they are too rare to be found.
+std::vector<UnitPoint> allowed_points(const SearchSpace& space,
+                                      std::size_t count,
+                                      std::uint64_t seed,
+                                      std::uint64_t index = 0);
+std::vector<UnitPoint> spread_design(const SearchSpace& space,
+                                     std::size_t count,
+                                     std::uint64_t seed,
+                                     std::uint64_t index = 0);
+
 /// Distance of the closest two points.
 double smallest_distance(const std::vector<UnitPoint>& points);
 

@@ -13,4 +13,13 @@ namespace repose::calibrator {
 /// signature, so wrappers stack.
 using Evaluator = std::function<std::vector<engine::Evaluation>(std::span<const engine::Trial>)>;
 
+/// What the evaluations so far have taken.
+struct Spent {
+  double core_seconds = 0.0;  ///< of computing, all cores together
+  double wall_seconds = 0.0;  ///< while at least one was running
+};
+
+/// Asks whoever answers for it: this folder has no clock.
+using Meter = std::function<Spent()>;
+
 }  // namespace repose::calibrator

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/experiment.hpp"
 #include "engine/parameter_set.hpp"
 
 namespace repose::calibrator {
@@ -28,6 +29,30 @@ struct Direction {
   std::vector<double> components;   ///< of unit length, in the order of the free parameters
   double posterior_to_prior = 1.0;  ///< standard deviation along it, after over before
   bool learnt = false;              ///< at most half the prior's
+  /// The same as a product of powers of the parameters near the best set, the largest power 1 or
+  /// -1: what is known is that product, to this relative standard uncertainty.
+  std::vector<double> powers = {};
+  double product_error = 0.0;
+};
+
+/// The joint posterior of the free parameters, by sampling (calibrator/posterior.hpp).
+struct Posterior {
+  std::vector<std::vector<double>> samples;      ///< SI, one value per free parameter; some of all
+  std::vector<std::array<double, 3>> quantiles;  ///< SI, 5, 50 and 95 % of each free parameter
+  double r_hat = 1.0;                            ///< the largest of any parameter
+  double effective_samples = 0.0;                ///< the fewest of any parameter
+};
+
+/// A measurement that would teach much.
+struct NextMeasurement {
+  engine::Experiment experiment;
+  std::string observable;
+  bool again = false;           ///< it is among the measurements: this is it with half the error
+  double predicted = 0.0;       ///< SI, at the best set
+  double standard_error = 0.0;  ///< SI; assumed: the median relative one of the study, or half
+  double gain = 0.0;            ///< of information, nat
+  std::size_t parameter = 0;    ///< that it would teach most about, index of the free ones
+  double learnt = 0.0;          ///< of that parameter with it, as FittedParameter's
 };
 
 /// One measurement against the confirmed prediction.
@@ -76,12 +101,14 @@ struct Fit {
   engine::ParameterSet best;                ///< complete: fixed, free and tied
   std::vector<FittedParameter> parameters;  ///< the free ones, in the calibration's order
   std::vector<Direction> directions;        ///< best-learnt first
-  std::vector<Prediction> predictions;      ///< one per measurement, in order
-  std::vector<double> offset;        ///< SI, per measurement: confirm fidelity minus fidelity
-  std::vector<double> offset_error;  ///< SI, its standard error
-  double misfit = 0.0;               ///< sum of z squared over the fitted measurements, confirmed
-  int evaluations = 0;               ///< spent, confirmation included
-  int failed = 0;                    ///< of these
+  Posterior posterior = {};
+  std::vector<NextMeasurement> next = {};  ///< the three that would teach most, best first
+  std::vector<Prediction> predictions;     ///< one per measurement, in order
+  std::vector<double> offset;              ///< SI, per measurement: confirm fidelity minus fidelity
+  std::vector<double> offset_error;        ///< SI, its standard error
+  double misfit = 0.0;  ///< sum of z squared over the fitted measurements, confirmed
+  int evaluations = 0;  ///< spent, confirmation included
+  int failed = 0;       ///< of these
   StopReason stop = StopReason::budget;
   std::vector<HistoryPoint> history;
   std::vector<std::string> remarks;  ///< sentences for people: warnings, what was not learnt

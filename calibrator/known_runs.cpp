@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -105,6 +106,25 @@ std::vector<KnownRun> known_runs(const Calibration& calibration,
     }
   }
   return known;
+}
+
+std::vector<KnownRun> closest_runs(const Calibration& calibration,
+                                   std::vector<KnownRun> known,
+                                   std::size_t most) {
+  if (most == 0 || known.size() <= most) return known;
+  std::vector<double> ranked;
+  for (const KnownRun& run : known) {
+    const double q = misfit(calibration.measurements, run.values);
+    ranked.push_back(std::isfinite(q) ? q : std::numeric_limits<double>::infinity());
+  }
+  std::vector<double> sorted = ranked;
+  const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(most) - 1;
+  std::ranges::nth_element(sorted, last);
+  std::vector<KnownRun> closest;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (closest.size() < most && ranked[i] <= *last) closest.push_back(std::move(known[i]));
+  }
+  return closest;
 }
 
 }  // namespace repose::calibrator

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "engine/random.hpp"
 
@@ -28,9 +30,11 @@ std::string describe(const engine::Trial& trial, engine::FailureKind kind) {
 
 Ledger::Ledger(const Calibration& calibration,
                const Evaluator& evaluator,
-               std::span<const KnownRun> known)
+               std::span<const KnownRun> known,
+               Meter meter)
     : calibration_(calibration),
       evaluator_(evaluator),
+      meter_(std::move(meter)),
       space_(calibration),
       suite_(calibration.measurements) {
   for (const KnownRun& run : known) {
@@ -44,11 +48,34 @@ Ledger::Ledger(const Calibration& calibration,
   }
 }
 
+int Ledger::remaining() const {
+  const Budget& budget = calibration_.budget;
+  int left = budget.evaluations - spent();
+  if (meter_ && spent() > 0) {
+    const Spent so_far = meter_();
+    const auto limit = [&](const std::optional<double>& allowed, double used) {
+      if (!allowed || used <= 0.0) return;
+      const double more = std::floor((*allowed - used) / (used / spent()));
+      left = static_cast<int>(std::min<double>(left, more));
+    };
+    limit(budget.core_seconds, so_far.core_seconds);
+    limit(budget.wall_seconds, so_far.wall_seconds);
+  }
+  return std::max(left, 0);
+}
+
 bool Ledger::two_levels() const {
   return calibration_.budget.fidelity != calibration_.budget.confirm_fidelity;
 }
 
+engine::Fidelity Ledger::fidelity_of(Level level) const {
+  const Budget& budget = calibration_.budget;
+  if (level == Level::draft) return engine::Fidelity::draft;
+  return level == Level::search ? budget.fidelity : budget.confirm_fidelity;
+}
+
 std::vector<SiteRun>& Ledger::runs(std::size_t site, Level level) {
+  if (level == Level::draft) return sites_[site].drafted;
   const bool apart = level == Level::confirm && two_levels();
   return apart ? sites_[site].confirmed : sites_[site].searched;
 }
@@ -68,11 +95,10 @@ int Ledger::fresh_replicate(std::size_t site) const {
 }
 
 std::vector<SiteRun> Ledger::run(std::string_view stage, std::span<const Request> requests) {
-  const Budget& budget = calibration_.budget;
   std::vector<engine::Trial> trials;
   for (const Request& request : requests) {
     suite_.append_trials(space_.at(sites_[request.site].at),
-                         request.level == Level::search ? budget.fidelity : budget.confirm_fidelity,
+                         fidelity_of(request.level),
                          trial_seed(calibration_.seed, request.site, request.replicate),
                          trials);
   }
@@ -89,14 +115,17 @@ std::vector<SiteRun> Ledger::run(std::string_view stage, std::span<const Request
 SiteRun Ledger::note(const Request& request,
                      std::string_view stage,
                      std::span<const engine::Evaluation> evaluations) {
-  SiteRun run{request.replicate, suite_.read(evaluations), true, 0.0};
+  const bool counted = request.level != Level::draft;
+  SiteRun run{
+      request.replicate, suite_.read(evaluations), true, 0.0, suite_.read_unmeasured(evaluations)};
   bool complete = true;
   for (const engine::Evaluation& evaluation : evaluations) {
     run.grain_steps += static_cast<double>(evaluation.effort.grain_steps);
     if (const auto* failure = std::get_if<engine::Failure>(&evaluation.outcome)) {
+      complete = false;
+      if (!counted) continue;
       FailureCount& count = failures_[describe(evaluation.trial, failure->kind)];
       if (count.times++ == 0) count.message = failure->message;
-      complete = false;
     }
   }
   for (std::size_t j = 0; j < run.values.size(); ++j) {
@@ -104,8 +133,9 @@ SiteRun Ledger::note(const Request& request,
     complete = false;
     if (calibration_.measurements[j].role == Role::fit) run.succeeded = false;
   }
-  if (!complete) ++failed_;
   runs(request.site, request.level).push_back(run);
+  if (!counted) return run;
+  if (!complete) ++failed_;
 
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   history_.push_back({spent() + 1,
@@ -151,10 +181,13 @@ Scatter Ledger::scatter(Level level) const {
   return result;
 }
 
-RunMean mean_of(std::span<const SiteRun> runs, std::size_t measurement) {
+RunMean mean_of(std::span<const SiteRun> runs,
+                std::size_t measurement,
+                std::vector<double> SiteRun::*values) {
   RunMean result;
   for (const SiteRun& run : runs) {
-    const double value = run.values[measurement];
+    if (measurement >= (run.*values).size()) continue;
+    const double value = (run.*values)[measurement];
     if (!std::isfinite(value)) continue;
     ++result.count;  // Welford 1962, Technometrics 4, 419-420
     const double deviation = value - result.mean;

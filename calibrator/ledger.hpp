@@ -23,13 +23,15 @@ struct SiteRun {
   std::vector<double> values;  ///< SI, one per measurement; NaN where its experiment failed
   bool succeeded = false;      ///< every fitted measurement was observed
   double grain_steps = 0.0;    ///< of all its experiments: the cost, free of any clock
+  std::vector<double> unmeasured = {};  ///< SI, of Suite::unmeasured(); empty: not known
 };
 
 /// A parameter set that was evaluated, and what came of it.
 struct Site {
   UnitPoint at;
-  std::vector<SiteRun> searched;   ///< at the budget's fidelity
-  std::vector<SiteRun> confirmed;  ///< at its confirm fidelity, where that is another
+  std::vector<SiteRun> searched;      ///< at the budget's fidelity
+  std::vector<SiteRun> confirmed;     ///< at its confirm fidelity, where that is another
+  std::vector<SiteRun> drafted = {};  ///< at draft fidelity, beside a dearer search
 };
 
 /// Scatter of one run, per measurement, pooled over all sites with replicates.
@@ -38,7 +40,7 @@ struct Scatter {
   std::vector<int> freedom;  ///< degrees of freedom; 0: `variance` is the measurement's, a guess
 };
 
-enum class Level : std::uint8_t { search, confirm };
+enum class Level : std::uint8_t { search, confirm, draft };
 
 /// A run that was made for another question, and answers this one too.
 struct KnownRun {
@@ -53,6 +55,12 @@ struct KnownRun {
 std::vector<KnownRun> known_runs(const Calibration& calibration,
                                  std::span<const engine::Evaluation> evaluations);
 
+/// The `most` of them whose misfit is smallest, in their order: emulators need no more, and what is
+/// far from the targets teaches little about them.
+std::vector<KnownRun> closest_runs(const Calibration& calibration,
+                                   std::vector<KnownRun> known,
+                                   std::size_t most);
+
 class Ledger {
  public:
   struct Request {
@@ -63,7 +71,8 @@ class Ledger {
 
   Ledger(const Calibration& calibration,
          const Evaluator& evaluator,
-         std::span<const KnownRun> known = {});
+         std::span<const KnownRun> known = {},
+         Meter meter = {});
 
   /// The site at a point: the one already there, or a new one.
   std::size_t site_at(const UnitPoint& point);
@@ -71,12 +80,14 @@ class Ledger {
   /// The next seed that neither level has used at a site.
   [[nodiscard]] int fresh_replicate(std::size_t site) const;
 
-  /// Evaluates all requests in one batch, and notes them in order.
+  /// Evaluates all requests in one batch, and notes them in order. Drafts are no part of the
+  /// history and are not counted.
   std::vector<SiteRun> run(std::string_view stage, std::span<const Request> requests);
 
   [[nodiscard]] const std::vector<Site>& sites() const { return sites_; }
   [[nodiscard]] int spent() const { return static_cast<int>(history_.size()); }
-  [[nodiscard]] int remaining() const { return calibration_.budget.evaluations - spent(); }
+  /// Evaluations that the budget still pays for, each at the mean cost of those so far.
+  [[nodiscard]] int remaining() const;
   [[nodiscard]] int failed() const { return failed_; }
   [[nodiscard]] std::string commonest_failure() const;  ///< empty if there was none
   [[nodiscard]] bool two_levels() const;
@@ -87,15 +98,18 @@ class Ledger {
 
   [[nodiscard]] const Calibration& calibration() const { return calibration_; }
   [[nodiscard]] const SearchSpace& space() const { return space_; }
+  [[nodiscard]] const Suite& suite() const { return suite_; }
 
  private:
   std::vector<SiteRun>& runs(std::size_t site, Level level);
+  [[nodiscard]] engine::Fidelity fidelity_of(Level level) const;
   SiteRun note(const Request& request,
                std::string_view stage,
                std::span<const engine::Evaluation> evaluations);
 
   const Calibration& calibration_;
   const Evaluator& evaluator_;
+  Meter meter_;
   SearchSpace space_;
   Suite suite_;
   std::vector<Site> sites_;
@@ -114,7 +128,9 @@ struct RunMean {
   double squares = 0.0;  ///< sum of squared deviations from it, SI squared
   int count = 0;
 };
-RunMean mean_of(std::span<const SiteRun> runs, std::size_t measurement);
+RunMean mean_of(std::span<const SiteRun> runs,
+                std::size_t measurement,
+                std::vector<double> SiteRun::*values = &SiteRun::values);
 
 /// Variance of one run at a site: its own replicates, shrunk to the pooled variance.
 ///

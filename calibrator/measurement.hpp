@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/experiment.hpp"
 
@@ -25,8 +27,15 @@ struct Measurement {
   Role role = Role::fit;
   engine::Unit unit;  ///< as the user gave it; for printing only
   std::string source;
+  int curve = 0;  ///< which curve of the study it is a point of, from 1; 0: of none
 
   bool operator==(const Measurement&) const = default;
 };
+
+/// The measurements as a reader sees them: the points of a curve together, any other by itself.
+std::vector<std::span<const Measurement>> lines_of(std::span<const Measurement> measurements);
+
+/// The setting that changes along the points of a curve.
+std::string setting_along(std::span<const Measurement> curve);
 
 }  // namespace repose::calibrator

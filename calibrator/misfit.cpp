@@ -18,6 +18,17 @@ Suite::Suite(std::span<const Measurement> measurements) {
     readings_.push_back(
         {static_cast<std::size_t>(found - experiments_.begin()), measurement.observable});
   }
+  for (std::size_t i = 0; i < experiments_.size(); ++i) {
+    const engine::ExperimentInfo* info = engine::find_experiment(experiments_[i].name);
+    if (info == nullptr) continue;
+    for (const engine::ObservableInfo& observable : info->observables) {
+      const auto measured = [&](const Reading& r) {
+        return r.experiment == i && r.observable == observable.name;
+      };
+      if (std::ranges::any_of(readings_, measured)) continue;
+      unmeasured_.push_back({i, std::string(observable.name), &observable});
+    }
+  }
 }
 
 std::optional<std::size_t> Suite::place_of(const engine::Experiment& experiment) const {
@@ -45,22 +56,35 @@ void Suite::append_trials(const engine::ParameterSet& parameters,
   }
 }
 
+double Suite::read_one(const Reading& reading, std::span<const engine::Evaluation> evaluations) {
+  const auto* observations =
+      std::get_if<std::vector<engine::Observation>>(&evaluations[reading.experiment].outcome);
+  if (observations != nullptr) {
+    const auto found =
+        std::ranges::find(*observations, reading.observable, &engine::Observation::name);
+    if (found != observations->end() && std::isfinite(found->value)) return found->value;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 std::vector<double> Suite::read(std::span<const engine::Evaluation> evaluations) const {
   assert(evaluations.size() == experiments_.size());
   std::vector<double> values;
-  values.reserve(readings_.size());
-  for (const Reading& reading : readings_) {
-    double value = std::numeric_limits<double>::quiet_NaN();
-    const auto* observations =
-        std::get_if<std::vector<engine::Observation>>(&evaluations[reading.experiment].outcome);
-    if (observations != nullptr) {
-      const auto found =
-          std::ranges::find(*observations, reading.observable, &engine::Observation::name);
-      if (found != observations->end() && std::isfinite(found->value)) value = found->value;
-    }
-    values.push_back(value);
-  }
+  for (const Reading& reading : readings_) values.push_back(read_one(reading, evaluations));
   return values;
+}
+
+std::vector<double> Suite::read_unmeasured(std::span<const engine::Evaluation> evaluations) const {
+  assert(evaluations.size() == experiments_.size());
+  std::vector<double> values;
+  for (const Reading& reading : unmeasured_) values.push_back(read_one(reading, evaluations));
+  return values;
+}
+
+std::vector<Suite::Unmeasured> Suite::unmeasured() const {
+  std::vector<Unmeasured> result;
+  for (const Reading& r : unmeasured_) result.push_back({experiments_[r.experiment], *r.info});
+  return result;
 }
 
 double standard_uncertainty(const Measurement& measurement) {

@@ -39,13 +39,27 @@ class Suite {
   /// or did not report the observable.
   [[nodiscard]] std::vector<double> read(std::span<const engine::Evaluation> evaluations) const;
 
+  /// An observable that the same runs give and nobody measured.
+  struct Unmeasured {
+    engine::Experiment experiment;
+    engine::ObservableInfo info;
+  };
+  [[nodiscard]] std::vector<Unmeasured> unmeasured() const;
+  /// What one evaluation observed of these, as read().
+  [[nodiscard]] std::vector<double> read_unmeasured(
+      std::span<const engine::Evaluation> evaluations) const;
+
  private:
   struct Reading {
     std::size_t experiment;
     std::string observable;
+    const engine::ObservableInfo* info = nullptr;  ///< of the unmeasured ones
   };
+  static double read_one(const Reading& reading, std::span<const engine::Evaluation> evaluations);
+
   std::vector<engine::Experiment> experiments_;
-  std::vector<Reading> readings_;  ///< one per measurement
+  std::vector<Reading> readings_;    ///< one per measurement
+  std::vector<Reading> unmeasured_;  ///< in the order of the experiments
 };
 
 /// sigma_j, SI.

@@ -33,6 +33,10 @@ std::vector<double> clip(std::vector<double> point, const Box& box) {
   return point;
 }
 
+bool keeps_relations(const std::vector<double>& point, const Box& box) {
+  return std::ranges::all_of(box.excesses, [&](const Objective& f) { return f(point) <= 0.0; });
+}
+
 /// NLopt may step out of the box by a rounding error, so the point is clipped before it is used.
 double watch_value(unsigned n, const double* x, double* /*gradient*/, void* data) noexcept {
   Watch& watch = *static_cast<Watch*>(data);
@@ -40,7 +44,8 @@ double watch_value(unsigned n, const double* x, double* /*gradient*/, void* data
     watch.clipped.assign(x, x + n);
     watch.clipped = clip(std::move(watch.clipped), watch.box);
     const double value = watch.objective(watch.clipped);
-    if (value < watch.best.value || watch.best.at.empty()) {
+    const bool better = value < watch.best.value || watch.best.at.empty();
+    if (better && keeps_relations(watch.clipped, watch.box)) {
       watch.best = {watch.clipped, value};
     }
     if (watch.done != nullptr && *watch.done && (*watch.done)()) nlopt_force_stop(watch.handle);
@@ -50,6 +55,11 @@ double watch_value(unsigned n, const double* x, double* /*gradient*/, void* data
     nlopt_force_stop(watch.handle);
     return very_large;
   }
+}
+
+/// A relation as NLopt asks for it; it throws nothing.
+double relation_value(unsigned n, const double* x, double* /*gradient*/, void* data) noexcept {
+  return (*static_cast<const Objective*>(data))(std::span(x, n));
 }
 
 using Handle = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
@@ -79,18 +89,24 @@ Minimum run(const Handle& handle,
   nlopt_set_maxeval(handle.get(), options.evaluations);
   if (options.tolerance > 0.0) nlopt_set_xtol_abs1(handle.get(), options.tolerance);
   if (options.step > 0.0) nlopt_set_initial_step1(handle.get(), options.step);
+  for (const Objective& excess : box.excesses) {
+    // NLopt only hands the pointer back.
+    auto* data = const_cast<Objective*>(&excess);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    nlopt_add_inequality_constraint(handle.get(), &relation_value, data, 0.0);
+  }
   double value = 0.0;
   nlopt_optimize(handle.get(), start.data(), &value);
   if (watch.thrown) std::rethrow_exception(watch.thrown);
   if (watch.best.at.empty()) {
     watch.best.at = clip(std::move(start), box);
-    watch.best.value = objective(watch.best.at);
+    if (keeps_relations(watch.best.at, box)) watch.best.value = objective(watch.best.at);
   }
   return watch.best;
 }
 
-/// BOBYQA needs two dimensions.
-nlopt_algorithm quadratic_model(std::size_t dimensions) {
+/// BOBYQA needs two dimensions, and knows no relations.
+nlopt_algorithm quadratic_model(std::size_t dimensions, bool restricted = false) {
+  if (restricted) return NLOPT_LN_COBYLA;
   return dimensions == 1 ? NLOPT_LN_SBPLX : NLOPT_LN_BOBYQA;
 }
 
@@ -127,7 +143,8 @@ Minimum minimise_locally(const Objective& objective,
   assert(start.size() == box.lower.size());
   start = clip(std::move(start), box);
   if (start.empty()) return {start, objective(start)};
-  const Handle handle = create(quadratic_model(start.size()), start.size());
+  const bool restricted = !box.excesses.empty();
+  const Handle handle = create(quadratic_model(start.size(), restricted), start.size());
   return run(handle,
              objective,
              box,
@@ -142,7 +159,9 @@ Minimum minimise_globally(const Objective& objective, const Box& box, int evalua
   std::vector<double> centre(box.lower.size());
   for (std::size_t k = 0; k < centre.size(); ++k) centre[k] = 0.5 * (box.lower[k] + box.upper[k]);
   if (centre.empty()) return {centre, objective(centre)};
-  const Handle handle = create(NLOPT_GN_DIRECT_L, centre.size());
+  // Only the authors' own DIRECT-L knows relations.
+  const auto algorithm = box.excesses.empty() ? NLOPT_GN_DIRECT_L : NLOPT_GN_ORIG_DIRECT_L;
+  const Handle handle = create(algorithm, centre.size());
   return run(handle,
              objective,
              box,

@@ -1,10 +1,12 @@
 /// Minima of cheap functions in a box: what the emulator is searched with. Never the simulations.
 ///
 /// Global: DIRECT-L (Gablonsky & Kelley 2001, J. Global Optim. 21, 27-37). Local: BOBYQA (Powell
-/// 2009, DAMTP report NA06), in one dimension subplex (Rowan 1990). Both by NLopt, which is seeded
-/// before each search on the calling thread, where its random state lives. The point returned is
-/// always in the box, and its value is the smallest seen. An exception of the function ends the
-/// search and is thrown on from here: none passes through NLopt's own frames.
+/// 2009, DAMTP report NA06), in one dimension subplex (Rowan 1990); where relations restrict the
+/// box, COBYLA (Powell 1994). All by NLopt, which is seeded before each search on the calling
+/// thread, where its random state lives. The point returned is always in the box and keeps its
+/// relations, and its value is the smallest seen; infinity where no point kept them. An exception
+/// of the function ends the search and is thrown on from here: none passes through NLopt's own
+/// frames.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +22,7 @@ using Objective = std::function<double(std::span<const double>)>;
 struct Box {
   std::vector<double> lower;
   std::vector<double> upper;
+  std::vector<Objective> excesses = {};  ///< relations that hold where none of them is above 0
 };
 
 Box unit_box(std::size_t dimensions);

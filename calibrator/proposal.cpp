@@ -28,7 +28,7 @@ std::vector<UnitPoint> best_sites(const Outlook& outlook, std::size_t count) {
     const Site& site = outlook.ledger.sites()[i];
     const bool useful = std::ranges::any_of(site.searched, &SiteRun::succeeded);
     if (!useful) continue;
-    ranked.emplace_back(expected_misfit(outlook.surrogate, outlook.targets, site.at), i);
+    ranked.emplace_back(expected_misfit(outlook, site.at), i);
   }
   std::ranges::sort(ranked);
   std::vector<UnitPoint> best;
@@ -55,8 +55,9 @@ class Improvement {
     }
   }
 
-  [[nodiscard]] double at(std::span<const Residual> residuals) const {
-    Eigen::ArrayXd misfits = Eigen::ArrayXd::Zero(draws_.cols());
+  /// `prior`: the misfit of the priors there.
+  [[nodiscard]] double at(std::span<const Residual> residuals, double prior) const {
+    Eigen::ArrayXd misfits = Eigen::ArrayXd::Constant(draws_.cols(), prior);
     for (Index j = 0; j < draws_.rows(); ++j) {
       const Residual& r = residuals[static_cast<std::size_t>(j)];
       misfits += (r.mean + r.deviation * draws_.row(j)).square().transpose();
@@ -113,11 +114,9 @@ std::vector<Residual> residuals(const Surrogate& surrogate,
   return result;
 }
 
-double expected_misfit(const Surrogate& surrogate,
-                       std::span<const Target> targets,
-                       std::span<const double> point) {
-  double sum = 0.0;
-  for (const Residual& r : residuals(surrogate, targets, point)) {
+double expected_misfit(const Outlook& outlook, std::span<const double> point) {
+  double sum = outlook.ledger.space().prior_misfit(point);
+  for (const Residual& r : residuals(outlook.surrogate, outlook.targets, point)) {
     sum += r.mean * r.mean + r.deviation * r.deviation;
   }
   return sum;
@@ -190,13 +189,12 @@ UnitPoint recommend(const Outlook& outlook, std::span<const UnitPoint> starts) {
   const Feasibility feasibility(outlook.ledger.sites());
   // A factor of P_ok in the likelihood is -2 log P_ok in the misfit.
   const Objective objective = [&](std::span<const double> point) {
-    return expected_misfit(outlook.surrogate, outlook.targets, point) -
-           2.0 * std::log(feasibility.at(point));
+    return expected_misfit(outlook, point) - 2.0 * std::log(feasibility.at(point));
   };
   std::vector<UnitPoint> from = best_sites(outlook, 3);
   from.insert(from.end(), starts.begin(), starts.end());
   return minimise(objective,
-                  unit_box(d),
+                  outlook.ledger.space().box(),
                   from,
                   50 * static_cast<int>(d),
                   {.evaluations = 40 + 20 * static_cast<int>(d)})
@@ -205,13 +203,13 @@ UnitPoint recommend(const Outlook& outlook, std::span<const UnitPoint> starts) {
 
 UnitPoint settle(const Outlook& outlook, const UnitPoint& point) {
   const double gap = smallest_gap(point.size());
-  const double here = expected_misfit(outlook.surrogate, outlook.targets, point);
+  const double here = expected_misfit(outlook, point);
   const UnitPoint* best = &point;
   // A twentieth of a standard deviation squared per measurement is no loss.
   double best_misfit = here + 0.05 * static_cast<double>(outlook.targets.size());
   for (const Site& site : outlook.ledger.sites()) {
     if (distance(site.at, point) > gap) continue;
-    const double there = expected_misfit(outlook.surrogate, outlook.targets, site.at);
+    const double there = expected_misfit(outlook, site.at);
     if (there <= best_misfit) {
       best_misfit = there;
       best = &site.at;
@@ -224,7 +222,8 @@ std::vector<UnitPoint> propose(const Outlook& outlook,
                                const UnitPoint& recommended,
                                int count,
                                int round) {
-  const std::size_t d = outlook.ledger.space().dimensions();
+  const SearchSpace& space = outlook.ledger.space();
+  const int global = 50 * static_cast<int>(space.dimensions());
   const UnitPoint settled = settle(outlook, recommended);
   std::vector<UnitPoint> chosen(
       static_cast<std::size_t>(repeats_of_recommended(outlook, settled, count, round)), settled);
@@ -232,23 +231,22 @@ std::vector<UnitPoint> propose(const Outlook& outlook,
   const Feasibility feasibility(outlook.ledger.sites());
   const CostModel cost(outlook.ledger.sites());
   std::vector<UnitPoint> starts = best_sites(outlook, 3);
-  const double reference =
-      starts.empty() ? std::numeric_limits<double>::infinity()
-                     : expected_misfit(outlook.surrogate, outlook.targets, starts.front());
+  const double reference = starts.empty() ? std::numeric_limits<double>::infinity()
+                                          : expected_misfit(outlook, starts.front());
   const Improvement improvement(outlook, reference);
   starts.push_back(recommended);
   while (chosen.size() < static_cast<std::size_t>(count)) {
     const Surrogate believed = outlook.surrogate.believing(chosen, scatter.variance);
-    const Objective objective = [&](std::span<const double> point) {
-      const double gain = improvement.at(residuals(believed, outlook.targets, point));
-      return cost.logarithm_at(point) - std::log(feasibility.at(point)) -
-             std::log(std::max(gain, 1e-300));
+    const auto gain_at = [&](std::span<const double> point) {
+      return improvement.at(residuals(believed, outlook.targets, point), space.prior_misfit(point));
     };
-    const Minimum found =
-        minimise(objective, unit_box(d), starts, 50 * static_cast<int>(d), {.evaluations = 80});
-    const double gain = improvement.at(residuals(believed, outlook.targets, found.at));
+    const Objective objective = [&](std::span<const double> point) {
+      return cost.logarithm_at(point) - std::log(feasibility.at(point)) -
+             std::log(std::max(gain_at(point), 1e-300));
+    };
+    const Minimum found = minimise(objective, space.box(), starts, global, {.evaluations = 80});
     // Where there is little to gain, better knowledge of the best is worth more (7.6 i).
-    const bool little = gain < 0.1 * static_cast<double>(outlook.targets.size());
+    const bool little = gain_at(found.at) < 0.1 * static_cast<double>(outlook.targets.size());
     chosen.push_back(little ? settled : settle(outlook, found.at));
   }
   return chosen;

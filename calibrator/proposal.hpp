@@ -1,17 +1,18 @@
 /// Which points to evaluate next: expected improvement of the misfit, composed from the emulators
 /// of the observables.
 ///
-///   r_j ~ N(a_j, b_j^2),  a_j = (mu_j - y_j) / sigma_j,  b_j = sd_j / sigma_j,  E Q = sum (a^2 +
-///   b^2) EI(u) = 1/S sum_s tau log(1 + exp((Q* - Q_s(u)) / tau)),  tau = 0.05 (1 + Q*) maximised:
-///   log EI(u) + log P_ok(u) - log cost(u)
+///   r_j ~ N(a_j, b_j^2),  a_j = (mu_j - y_j) / sigma_j,  b_j = sd_j / sigma_j
+///   E Q   = p(u) + sum (a^2 + b^2)
+///   EI(u) = 1/S sum_s tau log(1 + exp((Q* - Q_s(u)) / tau)),  tau = 0.05 (1 + Q*)
+///   maximised: log EI(u) + log P_ok(u) - log cost(u)
 ///
-///   mu, sd  emulator   y, sigma  target   Q_s  sum r_j^2 of one of S = 64 fixed antithetic draws
-///   Q*      smallest E Q over the evaluated points: the model's value, never the luckiest
-///   observation P_ok    chance that a run succeeds   cost  grain-steps of an evaluation
+///   mu, sd  emulator   y, sigma  target   p  misfit of the priors, where there are any
+///   Q_s     p + sum r_j^2 of one of S = 64 fixed antithetic draws
+///   Q*      smallest E Q over the evaluated points: the model's value, never the luckiest run's
+///   P_ok    chance that a run succeeds   cost  grain-steps of an evaluation
 ///
 /// Source: composite expected improvement, Astudillo & Frazier 2019 (ICML); distribution of the
-/// squared
-///         norm, Uhrenholt & Jensen 2019 (PMLR 89, 2661-2670).
+///         squared norm, Uhrenholt & Jensen 2019 (PMLR 89, 2661-2670).
 #pragma once
 
 #include <cstddef>
@@ -42,11 +43,6 @@ std::vector<Residual> residuals(const Surrogate& surrogate,
                                 std::span<const Target> targets,
                                 std::span<const double> point);
 
-/// E Q.
-double expected_misfit(const Surrogate& surrogate,
-                       std::span<const Target> targets,
-                       std::span<const double> point);
-
 /// P_ok: the vote of the five nearest sites, weighted by 1 / distance^2.
 class Feasibility {
  public:
@@ -75,6 +71,9 @@ struct Outlook {
   const Surrogate& surrogate;
   std::span<const Target> targets;
 };
+
+/// E Q.
+double expected_misfit(const Outlook& outlook, std::span<const double> point);
 
 /// The point of smallest expected misfit among those that can be expected to run.
 UnitPoint recommend(const Outlook& outlook, std::span<const UnitPoint> starts);

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <utility>
+
+#include "calibrator/draft_help.hpp"
 
 namespace repose::calibrator {
 namespace {
@@ -138,6 +141,17 @@ void on_fidelity(const Calibration& calibration, const Fit& fit, Sentences& out)
   }
 }
 
+void on_time(const Calibration& calibration, const Fit& fit, Sentences& out) {
+  const bool limited = calibration.budget.core_seconds || calibration.budget.wall_seconds;
+  if (!limited || fit.stop != StopReason::budget ||
+      fit.evaluations >= calibration.budget.evaluations) {
+    return;
+  }
+  out.emplace_back(
+      "The limit of time ended the search. Run again from the start, on another day or another "
+      "machine, it may end elsewhere; a replay from the store ends here.");
+}
+
 void on_verdict(const Calibration& calibration, const Fit& fit, Sentences& out) {
   if (fit.stop == StopReason::implausible) {
     out.emplace_back(
@@ -187,6 +201,8 @@ std::vector<std::string> remarks(const Outlook& outlook, const Fit& fit) {
   on_noise(calibration, fit, out);
   on_fidelity(calibration, fit, out);
   on_emulator(outlook, out);
+  for (std::string& sentence : draft_remarks(outlook.ledger)) out.push_back(std::move(sentence));
+  on_time(calibration, fit, out);
   if (fit.failed > 0) {
     out.push_back(std::to_string(fit.failed) + " of " +
                   plural(static_cast<std::size_t>(fit.evaluations), "evaluation") +

@@ -4,6 +4,10 @@
 ///   linear   x = lower + u (upper - lower)
 ///   log      x = lower (upper / lower)^u        0 <= u <= 1, x in SI
 ///   tied     value(key) = factor * value(to),   `to` being free or fixed
+///
+/// A constraint, sum_k a_k x_k <= b once ties and fixed values are put in, is an excess of at most
+/// 0 in units of what its sum can range over. A parameter is as likely everywhere in [0, 1] unless
+/// it has a prior: then it is normal in x, cut off at the bounds.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +15,7 @@
 #include <vector>
 
 #include "calibrator/calibration.hpp"
+#include "calibrator/optimiser.hpp"
 
 namespace repose::calibrator {
 
@@ -33,10 +38,31 @@ class SearchSpace {
   [[nodiscard]] double value(std::size_t parameter, double coordinate) const;
   [[nodiscard]] double coordinate(std::size_t parameter, double value) const;
 
+  /// Whether all constraints are kept.
+  [[nodiscard]] bool allows(std::span<const double> point) const;
+  /// The cube, less what the constraints forbid.
+  [[nodiscard]] Box box() const;
+
+  /// d value / d coordinate, SI.
+  [[nodiscard]] double slope(std::size_t parameter, double coordinate) const;
+  /// sum ((x - mean) / deviation)^2 over the parameters with a prior.
+  [[nodiscard]] double prior_misfit(std::span<const double> point) const;
+  /// Logarithm of the prior's density in the cube, but for a constant.
+  [[nodiscard]] double log_prior(std::span<const double> point) const;
+
  private:
+  /// sum_k weights_k x_k - bound, over the range of the sum; at most 0 where it is kept.
+  struct Relation {
+    std::vector<double> weights;
+    double bound = 0.0;
+    double range = 1.0;
+  };
+  [[nodiscard]] double excess(const Relation& relation, std::span<const double> point) const;
+
   engine::ParameterSet fixed_;
   std::vector<FreeParameter> free_;
   std::vector<Tie> tied_;
+  std::vector<Relation> relations_;
 };
 
 /// Euclidean distance in the cube.

@@ -24,16 +24,17 @@ double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 std::vector<UnitPoint> promising(const Outlook& outlook, const UnitPoint& recommended) {
   const std::size_t d = recommended.size();
   const std::uint64_t seed = outlook.ledger.calibration().seed;
-  std::vector<UnitPoint> pool = latin_hypercube(2000, d, seed, candidate_design);
+  const SearchSpace& space = outlook.ledger.space();
+  std::vector<UnitPoint> pool = allowed_points(space, 2000, seed, candidate_design);
   for (UnitPoint& near : latin_hypercube(200, d, seed, candidate_design + 1)) {
     for (std::size_t k = 0; k < d; ++k) {  // a fifth of the cube around the recommended point
       near[k] = std::clamp(recommended[k] + 0.2 * (near[k] - 0.5), 0.0, 1.0);
     }
-    pool.push_back(std::move(near));
+    if (space.allows(near)) pool.push_back(std::move(near));
   }
   std::vector<std::pair<double, std::size_t>> ranked;
   for (std::size_t i = 0; i < pool.size(); ++i) {
-    double mean = 0.0;
+    double mean = space.prior_misfit(pool[i]);
     double variance = 0.0;
     for (const Residual& r : residuals(outlook.surrogate, outlook.targets, pool[i])) {
       const double b2 = r.deviation * r.deviation;
@@ -42,8 +43,8 @@ std::vector<UnitPoint> promising(const Outlook& outlook, const UnitPoint& recomm
     }
     ranked.emplace_back(mean - 2.0 * std::sqrt(variance), i);
   }
-  constexpr std::ptrdiff_t kept = 199;
-  std::ranges::partial_sort(ranked, ranked.begin() + kept);
+  const std::size_t kept = std::min<std::size_t>(199, ranked.size());
+  std::ranges::partial_sort(ranked, ranked.begin() + static_cast<std::ptrdiff_t>(kept));
   std::vector<UnitPoint> result{recommended};
   for (std::size_t i = 0; i < kept; ++i) result.push_back(std::move(pool[ranked[i].second]));
   return result;
@@ -102,7 +103,10 @@ double probability_of_better(const Outlook& outlook, const UnitPoint& recommende
   constexpr int draws = 128;
   const std::vector<UnitPoint> points = promising(outlook, recommended);
   const auto count = static_cast<Index>(points.size());
-  Eigen::ArrayXXd misfits = Eigen::ArrayXXd::Zero(count, draws);
+  Eigen::ArrayXXd misfits(count, draws);
+  for (Index i = 0; i < count; ++i) {
+    misfits.row(i) = outlook.ledger.space().prior_misfit(points[static_cast<std::size_t>(i)]);
+  }
   engine::Random random(outlook.ledger.calibration().seed, engine::Purpose::proposal, 1);
   for (const Target& target : outlook.targets) {
     const auto joint = outlook.surrogate.process(target.measurement)->at_all(points);
@@ -116,10 +120,9 @@ double probability_of_better(const Outlook& outlook, const UnitPoint& recommende
     const Eigen::ArrayXd means = (joint.mean.array() - target.value) / std::sqrt(target.variance);
     misfits += ((root.triangularView<Eigen::Lower>() * normals).array().colwise() + means).square();
   }
-  const double epsilon =
-      std::max({0.5,
-                0.05 * static_cast<double>(outlook.targets.size()),
-                0.2 * expected_misfit(outlook.surrogate, outlook.targets, recommended)});
+  const double epsilon = std::max({0.5,
+                                   0.05 * static_cast<double>(outlook.targets.size()),
+                                   0.2 * expected_misfit(outlook, recommended)});
   int better = 0;
   for (Index s = 0; s < draws; ++s) {
     if (misfits.col(s).minCoeff() < misfits(0, s) - epsilon) ++better;
@@ -143,7 +146,11 @@ double least_implausibility(const Outlook& outlook, const UnitPoint& recommended
   };
   const std::size_t d = recommended.size();
   const std::vector<UnitPoint> starts{recommended};
-  return minimise(objective, unit_box(d), starts, 100 * static_cast<int>(d), {.evaluations = 100})
+  return minimise(objective,
+                  outlook.ledger.space().box(),
+                  starts,
+                  100 * static_cast<int>(d),
+                  {.evaluations = 100})
       .value;
 }
 

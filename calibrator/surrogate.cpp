@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "calibrator/draft_help.hpp"
 #include "calibrator/optimiser.hpp"
 
 namespace repose::calibrator {
@@ -245,6 +246,25 @@ Belief GaussianProcess::at(std::span<const double> point) const {
   return {standard_.shift + standard_.scale * mean, squared(standard_.scale) * variance};
 }
 
+std::vector<Belief> GaussianProcess::at_each(std::span<const UnitPoint> points) const {
+  MatrixXd cross(at_.rows(), static_cast<Index>(points.size()));
+  for (Index i = 0; i < cross.cols(); ++i) {
+    cross.col(i) = covariances(points[static_cast<std::size_t>(i)]);
+  }
+  const VectorXd means = cross.transpose() * weights_;
+  const VectorXd rest = (1.0 - (cross.transpose() * ones_).array()).matrix();
+  root_.matrixL().solveInPlace(cross);
+  std::vector<Belief> beliefs;
+  for (Index i = 0; i < cross.cols(); ++i) {
+    const double prior = prior_variance(points[static_cast<std::size_t>(i)]);
+    const double variance =
+        std::max(prior - cross.col(i).squaredNorm() + squared(rest(i)) / ones_sum_, 0.0);
+    beliefs.push_back({standard_.shift + standard_.scale * (mean_ + means(i)),
+                       squared(standard_.scale) * variance * inflation_});
+  }
+  return beliefs;
+}
+
 VectorXd GaussianProcess::gradient(std::span<const double> point) const {
   const auto& length = hyperparameters_.length;
   VectorXd result = VectorXd::Zero(at_.cols());
@@ -306,12 +326,21 @@ GaussianProcess GaussianProcess::believing(std::span<const UnitPoint> points,
 
 namespace {
 
-std::vector<Sample> samples_of(const Ledger& ledger, std::size_t measurement, double pooled) {
+std::vector<Sample> samples_of(const Ledger& ledger,
+                               std::size_t measurement,
+                               double pooled,
+                               const DraftHelp* help) {
   std::vector<Sample> samples;
   for (const Site& site : ledger.sites()) {
     const RunMean runs = mean_of(site.searched, measurement);
-    if (runs.count == 0) continue;
-    samples.push_back({site.at, runs.mean, run_variance(runs, pooled) / runs.count});
+    if (runs.count > 0) {
+      samples.push_back({site.at, runs.mean, run_variance(runs, pooled) / runs.count});
+      continue;
+    }
+    const RunMean drafts = mean_of(site.drafted, measurement);
+    if (help == nullptr || !help->proven || drafts.count == 0) continue;
+    samples.push_back(
+        {site.at, help->value(drafts.mean), std::max(help->variance(drafts.mean), pooled)});
   }
   return samples;
 }
@@ -322,8 +351,10 @@ Surrogate::Surrogate(const Ledger& ledger, const Surrogate* previous)
     : refits_(previous == nullptr ? 0 : previous->refits_ + 1) {
   const std::size_t d = ledger.space().dimensions();
   const Scatter scatter = ledger.scatter(Level::search);
+  const std::vector<DraftHelp> help = learn_draft_help(ledger);
   for (std::size_t j = 0; j < scatter.variance.size(); ++j) {
-    std::vector<Sample> samples = samples_of(ledger, j, scatter.variance[j]);
+    std::vector<Sample> samples =
+        samples_of(ledger, j, scatter.variance[j], help.empty() ? nullptr : &help[j]);
     if (samples.empty()) {
       processes_.emplace_back();
       continue;

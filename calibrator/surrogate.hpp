@@ -60,6 +60,9 @@ class GaussianProcess {
 
   [[nodiscard]] Belief at(std::span<const double> point) const;
 
+  /// The same of many points, faster; equal but for rounding.
+  [[nodiscard]] std::vector<Belief> at_each(std::span<const UnitPoint> points) const;
+
   /// d mean / d u_k.
   [[nodiscard]] Eigen::VectorXd gradient(std::span<const double> point) const;
 

@@ -15,13 +15,14 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double prior_precision = 12.0;
+constexpr double uniform_precision = 12.0;
 constexpr double threshold = 3.841458820694124;  // 95 % of chi-squared with one degree of freedom
-constexpr int steps = 40;                        // grid of a profile
+constexpr double forbidden = std::numeric_limits<double>::infinity();  // by a constraint
+constexpr int steps = 40;                                              // grid of a profile
 constexpr std::uint64_t candidate_design = 2'000'000;
 
 double weighted_misfit(const Outlook& outlook, std::span<const double> point) {
-  double sum = 0.0;
+  double sum = outlook.ledger.space().prior_misfit(point);
   for (const Target& target : outlook.targets) {
     const Belief belief = outlook.surrogate.at(target.measurement, point);
     const double gap = belief.mean - target.value;
@@ -40,7 +41,10 @@ class Profile {
   /// The minimum with the parameter held.
   [[nodiscard]] Minimum at(double held, UnitPoint start) const {
     start[parameter_] = held;
-    if (start.size() == 1) return {start, weighted_misfit(outlook_, start)};
+    if (start.size() == 1) {
+      const bool allowed = outlook_.ledger.space().allows(start);
+      return {start, allowed ? weighted_misfit(outlook_, start) : forbidden};
+    }
     Minimum best = search(start);
     const UnitPoint other = candidate(held);
     if (!other.empty()) {
@@ -56,14 +60,23 @@ class Profile {
     UnitPoint rest = start;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(parameter_));
     UnitPoint whole;
-    const Objective objective = [&](std::span<const double> point) {
+    const auto complete = [&](std::span<const double> point) -> const UnitPoint& {
       whole.assign(point.begin(), point.end());
       whole.insert(whole.begin() + static_cast<std::ptrdiff_t>(parameter_), held);
-      return weighted_misfit(outlook_, whole);
+      return whole;
     };
+    const Objective objective = [&](std::span<const double> point) {
+      return weighted_misfit(outlook_, complete(point));
+    };
+    const Box cube = outlook_.ledger.space().box();
+    Box box = unit_box(rest.size());
+    for (const Objective& excess : cube.excesses) {
+      box.excesses.emplace_back(
+          [&](std::span<const double> point) { return excess(complete(point)); });
+    }
     Minimum found = minimise_locally(
         objective,
-        unit_box(rest.size()),
+        box,
         rest,
         {.evaluations = 20 + 10 * static_cast<int>(rest.size()), .tolerance = 1e-3});
     found.at.insert(found.at.begin() + static_cast<std::ptrdiff_t>(parameter_), held);
@@ -143,7 +156,7 @@ std::vector<Interval> profile_intervals(const Outlook& outlook, const UnitPoint&
   const std::size_t d = best.size();
   const std::uint64_t seed = outlook.ledger.calibration().seed;
   std::vector<Minimum> candidates;
-  for (UnitPoint& point : latin_hypercube(1000, d, seed, candidate_design)) {
+  for (UnitPoint& point : allowed_points(outlook.ledger.space(), 1000, seed, candidate_design)) {
     const double value = weighted_misfit(outlook, point);
     candidates.push_back({std::move(point), value});
   }
@@ -161,31 +174,78 @@ std::vector<Interval> profile_intervals(const Outlook& outlook, const UnitPoint&
   return intervals;
 }
 
+Eigen::VectorXd prior_precision(const Outlook& outlook, const UnitPoint& best) {
+  const SearchSpace& space = outlook.ledger.space();
+  const auto& free = outlook.ledger.calibration().free;
+  Eigen::VectorXd precision(static_cast<Index>(best.size()));
+  for (std::size_t k = 0; k < best.size(); ++k) {
+    const double slope = space.slope(k, best[k]);
+    const double own = free[k].prior ? slope / free[k].prior->deviation : 0.0;
+    precision(static_cast<Index>(k)) = uniform_precision + own * own;
+  }
+  return precision;
+}
+
+Eigen::MatrixXd information(const Outlook& outlook, const UnitPoint& best) {
+  const auto d = static_cast<Index>(best.size());
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(d, d);
+  for (const Target& target : outlook.targets) {
+    const auto& process = outlook.surrogate.process(target.measurement);
+    const Eigen::VectorXd slope = process->gradient(best);
+    sum += slope * slope.transpose() / (process->at(best).variance + target.variance);
+  }
+  return sum;
+}
+
+namespace {
+
+/// As a product of powers: along it du_k = (x_k / slope_k) d log x_k.
+void write_as_product(const SearchSpace& space,
+                      const UnitPoint& best,
+                      double deviation,
+                      Direction& direction) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < best.size(); ++k) {
+    const double power =
+        direction.components[k] * space.value(k, best[k]) / space.slope(k, best[k]);
+    if (std::abs(power) > std::abs(largest)) largest = power;
+    direction.powers.push_back(power);
+  }
+  if (largest == 0.0) return;
+  for (double& power : direction.powers) power /= std::abs(largest);
+  direction.product_error = deviation / std::abs(largest);
+}
+
+}  // namespace
+
 Learnt learnt_directions(const Outlook& outlook, const UnitPoint& best) {
   const auto d = static_cast<Index>(best.size());
   Learnt result;
   if (d == 0) return result;
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(d, d);
-  for (const Target& target : outlook.targets) {
-    const auto& process = outlook.surrogate.process(target.measurement);
-    const Eigen::VectorXd slope = process->gradient(best);
-    information += slope * slope.transpose() / (process->at(best).variance + target.variance);
-  }
-  const Eigen::MatrixXd precision = information + prior_precision * Eigen::MatrixXd::Identity(d, d);
+  const Eigen::VectorXd prior = prior_precision(outlook, best);
+  const Eigen::MatrixXd data = information(outlook, best);
+  const Eigen::MatrixXd precision = data + Eigen::MatrixXd(prior.asDiagonal());
   const Eigen::VectorXd posterior = precision.inverse().diagonal();
-  for (Index k = 0; k < d; ++k) result.share.push_back(1.0 - prior_precision * posterior(k));
+  for (Index k = 0; k < d; ++k) result.share.push_back(1.0 - prior(k) * posterior(k));
 
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
+  // In coordinates in which the prior is a unit sphere.
+  const Eigen::VectorXd scale = prior.cwiseSqrt();
+  const Eigen::MatrixXd relative =
+      scale.cwiseInverse().asDiagonal() * data * scale.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(relative);
   for (Index i = d - 1; i >= 0; --i) {  // the solver sorts upwards
-    Eigen::VectorXd vector = solver.eigenvectors().col(i);
+    Eigen::VectorXd vector = scale.cwiseProduct(solver.eigenvectors().col(i));
+    const double length = vector.norm();
+    vector /= length;
     Index largest = 0;
     vector.cwiseAbs().maxCoeff(&largest);
     if (vector(largest) < 0.0) vector = -vector;  // of the two signs, the one people read easily
-    const double lambda = std::max(solver.eigenvalues()(i), 0.0);
     Direction direction;
     direction.components.assign(vector.data(), vector.data() + d);
-    direction.posterior_to_prior = std::sqrt(prior_precision / (prior_precision + lambda));
+    direction.posterior_to_prior = 1.0 / std::sqrt(1.0 + std::max(solver.eigenvalues()(i), 0.0));
     direction.learnt = direction.posterior_to_prior <= 0.5;
+    write_as_product(
+        outlook.ledger.space(), best, direction.posterior_to_prior / length, direction);
     result.directions.push_back(std::move(direction));
   }
   return result;

@@ -281,6 +281,18 @@ bool Store::add_evaluation(const EvaluationRecord& evaluation) {
   return state_->connection.changes() == 1;
 }
 
+std::vector<EvaluationRecord> Store::evaluations_before(const std::string& engine_version,
+                                                        std::int64_t time) const {
+  const std::scoped_lock hold(state_->mutex);
+  Statement row = state_->connection.prepare(
+      "SELECT key, question, answer, seconds, engine_version, created_at FROM evaluation "
+      "WHERE engine_version = ?1 AND created_at < ?2 ORDER BY created_at, key");
+  row.bind(std::string_view(engine_version)).bind(time);
+  std::vector<EvaluationRecord> result;
+  while (row.step()) result.push_back(evaluation_of(row, 0));
+  return result;
+}
+
 void Store::note_used(std::int64_t calibration,
                       std::int64_t first_ordinal,
                       const std::vector<std::string>& keys) {

@@ -106,6 +106,9 @@ class Store {
   [[nodiscard]] std::optional<EvaluationRecord> evaluation(const std::string& key) const;
   /// Keeps an answer; one that is there already stays. True where it was new.
   bool add_evaluation(const EvaluationRecord& evaluation);
+  /// All of an engine that were kept before a time, in the order of keeping.
+  [[nodiscard]] std::vector<EvaluationRecord> evaluations_before(const std::string& engine_version,
+                                                                 std::int64_t time) const;
   /// Notes which evaluations a calibration used, in order; what is noted already stays.
   void note_used(std::int64_t calibration,
                  std::int64_t first_ordinal,

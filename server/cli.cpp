@@ -297,6 +297,18 @@ void add_bench_calibrator(CLI::App& bench, BenchCalibratorCommand& options, Work
       ->check(CLI::IsMember(options.methods))
       ->delimiter(',')
       ->take_all();
+  auto* honesty = command.add_option(
+      "--honesty",
+      options.honesty,
+      "Instead: over so many studies, how often intervals hold the truth and hits are true");
+  honesty->check(CLI::Range(1, 10000))->type_name("STUDIES");
+  command
+      .add_option("--warm-start",
+                  options.warm_start,
+                  "Instead: new evaluations needed after so many stored runs for another target")
+      ->check(CLI::Range(1, 300))
+      ->type_name("RUNS")
+      ->excludes(honesty);
   add_json(command, options.form, "JSON on standard output");
   command.callback([&] { work = [&] { return bench_calibrator_command(options); }; });
 }

@@ -8,6 +8,7 @@
 #include "calibrator/comparison.hpp"
 #include "calibrator/diagnosis/objection.hpp"
 #include "engine/catalogue.hpp"
+#include "engine/evaluate.hpp"
 #include "server/jobs/clock.hpp"
 #include "server/json/calibration_json.hpp"
 #include "server/json/comparison_json.hpp"
@@ -243,15 +244,34 @@ Answer<std::string> extension_study(const db::Store& store,
 }
 
 std::vector<calibrator::KnownRun> inherited_runs(const db::Store& store,
-                                                 const Calibration& calibration) {
-  if (!calibration.extends) return {};
-  std::vector<engine::Evaluation> evaluations = evaluations_of(
-      store.used(calibration.extends->calibration, std::numeric_limits<int>::max(), std::nullopt));
-  if (calibration.extends->diagnosis) {
-    const auto more = evaluations_of(store.used_by_diagnosis(*calibration.extends->diagnosis));
+                                                 const Calibration& calibration,
+                                                 std::int64_t made_at) {
+  constexpr std::size_t most = 120;  // of a warm start; the emulators grow with the cube of it
+  std::vector<engine::Evaluation> evaluations;
+  const auto add = [&](const std::vector<engine::Evaluation>& more) {
     evaluations.insert(evaluations.end(), more.begin(), more.end());
+  };
+  if (calibration.extends) {
+    add(evaluations_of(store.used(
+        calibration.extends->calibration, std::numeric_limits<int>::max(), std::nullopt)));
+    if (calibration.extends->diagnosis) {
+      add(evaluations_of(store.used_by_diagnosis(*calibration.extends->diagnosis)));
+    }
   }
-  return calibrator::known_runs(calibration, evaluations);
+  if (!calibration.budget.warm_start) return calibrator::known_runs(calibration, evaluations);
+  std::vector<db::UsedEvaluation> stored;
+  for (db::EvaluationRecord& record :
+       store.evaluations_before(std::string(engine::version()), made_at)) {
+    const auto named = [&](const calibrator::Measurement& m) {  // before the dear reading of it
+      return record.question.find('"' + m.experiment.name + '"') != std::string::npos;
+    };
+    if (std::ranges::any_of(calibration.measurements, named)) {
+      stored.push_back({0, std::move(record)});
+    }
+  }
+  add(evaluations_of(stored));
+  return calibrator::closest_runs(
+      calibration, calibrator::known_runs(calibration, evaluations), most);
 }
 
 }  // namespace repose::server

@@ -49,8 +49,11 @@ Answer<std::string> extension_study(const db::Store& store,
                                     const std::string& effect,
                                     std::optional<std::int64_t> diagnosis);
 
-/// What the runs of the calibration that this one extends tell of it.
+/// What earlier runs tell of a calibration: those of the one that it extends and, where it asks for
+/// a warm start, all that the store had of this engine before the calibration was made; so a replay
+/// inherits the same.
 std::vector<calibrator::KnownRun> inherited_runs(const db::Store& store,
-                                                 const calibrator::Calibration& calibration);
+                                                 const calibrator::Calibration& calibration,
+                                                 std::int64_t made_at);
 
 }  // namespace repose::server

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "calibrator/probe.hpp"
 #include "db/event_store.hpp"
 #include "db/store.hpp"
 #include "engine/evaluate.hpp"
@@ -98,6 +99,10 @@ struct Service::State {
            const Calibration& calibration,
            const std::stop_token& stop,
            const CalibrationEvents& events);
+  bool refuse_unfelt(std::int64_t id,
+                     const Calibration& calibration,
+                     Workers& workers,
+                     const std::stop_token& stop);
   void conclude(std::int64_t id, const Calibration& calibration, const Fit& fit);
   void look(const std::stop_token& stop);
   /// Takes a job that a user cancels from the queue, or asks it to stop where it runs.
@@ -158,6 +163,31 @@ void Service::State::conclude(std::int64_t id, const Calibration& calibration, c
                microseconds_now());
 }
 
+/// Fails a calibration whose free parameters no measurement feels. True if it did.
+bool Service::State::refuse_unfelt(std::int64_t id,
+                                   const Calibration& calibration,
+                                   Workers& workers,
+                                   const std::stop_token& stop) {
+  const auto unfelt = calibrator::unfelt_parameters(
+      calibration,
+      [&](std::span<const engine::Trial> trials) { return workers.run(trials, stop, {}); });
+  if (unfelt.empty() || stop.stop_requested()) return false;
+  std::string names;
+  for (const std::size_t k : unfelt) {
+    names += (names.empty() ? "" : ", ") + engine::to_string(calibration.free[k].key);
+  }
+  take_cancel({Job::Kind::calibration, id});
+  store.finish(id,
+               "failed",
+               {},
+               {},
+               "no measurement feels " + names +
+                   ": from bound to bound the experiments come out equal to the last bit; fix " +
+                   (unfelt.size() == 1 ? "it" : "them") + " or add a measurement that does",
+               microseconds_now());
+  return true;
+}
+
 /// Runs a calibration that is in the state running, and leaves it in the state it has come to.
 void Service::State::run(std::int64_t id,
                          const Calibration& calibration,
@@ -182,7 +212,11 @@ void Service::State::run(std::int64_t id,
     if (events.progress) events.progress(progress);
   };
   try {
-    const Fit fit = calibrate_from_store(store, id, calibration, evaluator, stop, observer);
+    if (refuse_unfelt(id, calibration, workers, stop)) return;
+    const Fit fit = calibrate_from_store(
+        store, id, calibration, evaluator, {.stop = stop, .observer = observer, .meter = [&] {
+                                              return workers.spent();
+                                            }});
     if (last) store.set_progress(id, print_progress(calibration, *last));
     // A fit that lacks evaluations because of a stop is no fit.
     interrupted |= stop.stop_requested() || fit.stop == calibrator::StopReason::cancelled;

@@ -31,7 +31,7 @@ class Recommendations {
         hits += standing(r.evaluations + later) ? 1 : 0;
       }
       if (hits < kept) continue;
-      run.solved_at = r.evaluations;
+      run.solved_at = std::max(r.evaluations, 1);  // 0 says never
       run.rounds_to_solve = r.rounds;
       return true;
     }
@@ -60,15 +60,17 @@ class Recommendations {
   std::vector<Recommendation> made_;
 };
 
-BenchRun run_ours(const AnalyticStudy& study) {
+BenchRun run_ours(const AnalyticStudy& study, std::span<const KnownRun> known) {
   Recommendations recommendations;
   int rounds = 0;
   BenchRun result;
-  result.fit = calibrate(study.calibration, evaluator(study), {}, [&](const Progress& progress) {
+  const auto observe = [&](const Progress& progress) {
     if (progress.stage == "search") ++rounds;
     if (progress.best.empty()) return;
     recommendations.add(progress.evaluations_done, truly_hits(study, progress.best), rounds);
-  });
+  };
+  result.fit =
+      calibrate(study.calibration, evaluator(study), {.observer = observe, .known = known});
   result.truly_hit = truly_hits(study, result.fit.best);
   recommendations.add(result.fit.evaluations, result.truly_hit, rounds);
   recommendations.solve(result);
@@ -96,8 +98,9 @@ BenchRun run_baseline(const AnalyticStudy& study) {
 
 }  // namespace
 
-BenchRun run(const AnalyticStudy& study) {
-  return study.calibration.budget.method == Method::repose ? run_ours(study) : run_baseline(study);
+BenchRun run(const AnalyticStudy& study, std::span<const KnownRun> known) {
+  return study.calibration.budget.method == Method::repose ? run_ours(study, known)
+                                                           : run_baseline(study);
 }
 
 std::optional<int> quantile(std::span<const BenchRun> runs, double p) {

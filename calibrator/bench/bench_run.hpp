@@ -10,6 +10,7 @@
 
 #include "calibrator/bench/analytic_study.hpp"
 #include "calibrator/fit.hpp"
+#include "calibrator/ledger.hpp"
 
 namespace repose::calibrator::bench {
 
@@ -22,8 +23,9 @@ struct BenchRun {
 
 /// Solved: the recommended point is truly within one standard error of every target, and still is
 /// in at least 12 of the next 15 evaluations. By the method that the study's budget names; of a
-/// baseline only the search is run, and no longer than it takes to solve.
-BenchRun run(const AnalyticStudy& study);
+/// baseline only the search is run, and no longer than it takes to solve. Ours is told the `known`
+/// runs.
+BenchRun run(const AnalyticStudy& study, std::span<const KnownRun> known = {});
 
 /// The p-quantile of evaluations to solve; nothing where too few runs solved it.
 std::optional<int> quantile(std::span<const BenchRun> runs, double p);

@@ -176,6 +176,8 @@ struct BenchCalibratorCommand {
   std::vector<std::string> cases{"A", "B", "C", "D", "E"};
   int seeds = 20;
   std::vector<std::string> methods;
+  int honesty = 0;     ///< studies of each case to hold its answers to account; 0: compare methods
+  int warm_start = 0;  ///< stored runs that each study starts from; 0: likewise
   Form form = Form::text;
 };
 int bench_calibrator_command(const BenchCalibratorCommand& command);

@@ -8,6 +8,7 @@
 #include "engine/evaluate.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/text_table.hpp"
+#include "server/report/fit_line.hpp"
 #include "server/report/frame_files.hpp"
 #include "server/report/label.hpp"
 #include "server/report/number_text.hpp"
@@ -25,20 +26,14 @@ namespace {
 
 std::string measurement_table(const Calibration& calibration, const Fit& fit) {
   TextTable table({"measurement", "measured", "predicted", "difference", "z"});
-  for (const calibrator::Prediction& prediction : fit.predictions) {
-    const Measurement& measurement = calibration.measurements.at(prediction.measurement);
-    const engine::Unit& unit = measurement.unit;
-    const double difference = (prediction.predicted - measurement.value) / unit.factor;
-    std::string label = measurement_label(measurement);
+  for (const FitLine& line : lines_of(calibration, fit)) {
+    const Measurement& measurement = line.measured.front();
+    std::string label = line_label(line.measured);
     const std::string settings = settings_label(measurement.experiment);
-    if (!settings.empty()) label += " (" + settings + ")";
+    if (!settings.empty() && !line.is_curve()) label += " (" + settings + ")";
     if (measurement.role == calibrator::Role::held_out) label += " (held out)";
-    const int decimals = decimals_for(difference, measurement.standard_error / unit.factor);
-    table.row({label,
-               with_error(measurement.value, measurement.standard_error, unit),
-               with_error(prediction.predicted, prediction.standard_error, unit),
-               std::isnan(difference) ? "-" : fixed_text(difference, decimals),
-               std::isnan(prediction.z) ? "-" : fixed_text(prediction.z, 2)});
+    table.row(
+        {label, measured_text(line), predicted_text(line), difference_text(line), z_text(line)});
   }
   return table.str();
 }
@@ -70,6 +65,9 @@ std::string print_summary(const CalibrationDocument& document) {
           parameter_table(calibration, fit) + "\n";
   for (const std::string& sentence : learnt_sentences(calibration, fit)) text += sentence + "\n";
   text += stop_sentence(fit.stop) + "\n";
+  const std::vector<std::string> next = next_sentences(calibration, fit);
+  if (!next.empty()) text += "\nWhat to measure next\n";
+  for (const std::string& sentence : next) text += "- " + sentence + "\n";
   if (!fit.remarks.empty()) text += "\nRemarks\n";
   for (const std::string& remark : fit.remarks) text += "- " + remark + "\n";
   text += "\n" + std::to_string(fit.evaluations) + " evaluations";

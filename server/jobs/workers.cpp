@@ -25,6 +25,8 @@ struct Workers::Task {
   std::string key;
   std::string answer;  ///< document; empty until there is one
   bool stored = false;
+  double seconds = 0.0;    ///< it took
+  std::int64_t ended = 0;  ///< microseconds since 1970 UTC
 };
 
 namespace {
@@ -34,7 +36,7 @@ std::string host_failure(const Trial& trial, FailureKind kind, const std::string
   return print_answer({trial, Failure{kind, message, 0.0}, {}});
 }
 
-/// Answers that are not the engine's but the host's: not to be kept.
+/// Answers that are not the engine's but the host's.
 bool is_of_the_host(const Evaluation& evaluation) {
   const auto* failure = std::get_if<Failure>(&evaluation.outcome);
   if (failure == nullptr) return false;
@@ -42,10 +44,12 @@ bool is_of_the_host(const Evaluation& evaluation) {
          failure->kind == FailureKind::crashed;
 }
 
-bool is_cancelled(const Evaluation& evaluation) {
+bool is_a(FailureKind kind, const Evaluation& evaluation) {
   const auto* failure = std::get_if<Failure>(&evaluation.outcome);
-  return failure != nullptr && failure->kind == FailureKind::cancelled;
+  return failure != nullptr && failure->kind == kind;
 }
+
+std::string crashed_key(const std::string& key) { return key + "/crashed"; }
 
 std::string class_of(const engine::Experiment& experiment) {
   return experiment.name + "/" +
@@ -76,6 +80,40 @@ std::vector<std::size_t> Workers::longest_first(const std::vector<Task>& tasks) 
   };
   std::ranges::stable_sort(order, std::greater{}, seconds);
   return order;
+}
+
+std::string Workers::timed_out_key(const std::string& key) const {
+  return key + "/timed_out/" + std::to_string(options_.time_limit);
+}
+
+/// What the store has of it: an answer, or what became of an earlier attempt.
+void Workers::look_up(Task& task) const {
+  for (const std::string& key : {task.key, crashed_key(task.key), timed_out_key(task.key)}) {
+    const auto kept = store_.evaluation(key);
+    if (!kept) continue;
+    task.key = key;
+    task.answer = kept->answer;
+    task.stored = true;
+    task.seconds = kept->seconds;
+    task.ended = kept->created_at;
+    return;
+  }
+}
+
+/// Wall time is that during which any of a batch's trials ran, whatever lay between them.
+void Workers::count(const std::vector<Task>& tasks) {
+  std::vector<std::pair<double, double>> runs;  // begin and end, s
+  for (const Task& task : tasks) {
+    const double end = 1e-6 * static_cast<double>(task.ended);
+    runs.emplace_back(end - task.seconds, end);
+    spent_.core_seconds += task.seconds;
+  }
+  std::ranges::sort(runs);
+  double until = 0.0;
+  for (const auto& [begin, end] : runs) {
+    spent_.wall_seconds += std::max(0.0, end - std::max(begin, until));
+    until = std::max(until, end);
+  }
 }
 
 /// Runs the trial wherever trials are run; the answer's document.
@@ -112,13 +150,18 @@ void Workers::work(Task& task, const std::stop_token& stop) {
   const auto start = std::chrono::steady_clock::now();
   task.answer = ask(*task.trial, stop);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  if (is_of_the_host(parse_answer(*task.trial, task.answer))) return;
+  task.seconds = took.count();
+  task.ended = microseconds_now();
+  const Evaluation evaluation = parse_answer(*task.trial, task.answer);
+  if (is_a(FailureKind::cancelled, evaluation)) return;
+  if (is_a(FailureKind::crashed, evaluation)) task.key = crashed_key(task.key);
+  if (is_a(FailureKind::timed_out, evaluation)) task.key = timed_out_key(task.key);
   store_.add_evaluation({.key = task.key,
                          .question = print_trial(*task.trial),
                          .answer = task.answer,
-                         .seconds = took.count(),
+                         .seconds = task.seconds,
                          .engine_version = std::string(engine::version()),
-                         .created_at = microseconds_now()});
+                         .created_at = task.ended});
   remember(task.trial->experiment, took.count());
 }
 
@@ -133,11 +176,8 @@ std::vector<Evaluation> Workers::run(std::span<const Trial> trials,
     const auto [found, is_new] = place.try_emplace(key, tasks.size());
     task_of.push_back(found->second);
     if (!is_new) continue;
-    Task task{&trial, key, {}, false};
-    if (const auto kept = store_.evaluation(key)) {
-      task.answer = kept->answer;
-      task.stored = true;
-    }
+    Task task{&trial, key, {}};
+    look_up(task);
     tasks.push_back(std::move(task));
   }
   std::size_t done = 0;
@@ -171,6 +211,7 @@ std::vector<Evaluation> Workers::run(std::span<const Trial> trials,
     }
   }
   if (problem) std::rethrow_exception(problem);
+  count(tasks);
 
   std::vector<Evaluation> evaluations;
   used_.clear();
@@ -178,8 +219,9 @@ std::vector<Evaluation> Workers::run(std::span<const Trial> trials,
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const Task& task = tasks[task_of[i]];
     evaluations.push_back(parse_answer(trials[i], task.answer));
-    interrupted_ |= is_cancelled(evaluations.back());
-    if (!is_of_the_host(evaluations.back())) used_.push_back(task.key);
+    const bool cancelled = is_a(FailureKind::cancelled, evaluations.back());
+    interrupted_ |= cancelled;
+    if (!cancelled) used_.push_back(task.key);
   }
   return evaluations;
 }

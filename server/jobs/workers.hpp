@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrator/evaluator.hpp"
 #include "db/store.hpp"
 #include "engine/experiment.hpp"
 
@@ -35,22 +36,28 @@ class Workers {
   Workers(db::Store& store, const WorkerOptions& options);
 
   /// The evaluations of a batch in its order. Equal trials run once. A trial whose process crashed
-  /// (twice), ran past the limit or was cancelled is a Failure of that kind; these are no answers,
-  /// so they are not kept: asked again, the trial is run again.
+  /// (twice), ran past the limit or was cancelled is a Failure of that kind. The first two are kept
+  /// under a name of their own, so that a replay meets them too; with another limit, a trial that
+  /// ran past it is run again, as is one that was cancelled.
   std::vector<engine::Evaluation> run(std::span<const engine::Trial> trials,
                                       const std::stop_token& stop,
                                       const TrialObserver& observer);
 
   /// The keys of the last batch's answers that the store has, in order.
   [[nodiscard]] const std::vector<std::string>& used() const { return used_; }
+  /// What the answers of all batches took, by the store's word: a replay is told the same.
+  [[nodiscard]] calibrator::Spent spent() const { return spent_; }
   /// Whether any trial of the last batch was cancelled.
   [[nodiscard]] bool interrupted() const { return interrupted_; }
 
  private:
   struct Task;
 
+  void look_up(Task& task) const;
+  void count(const std::vector<Task>& tasks);
   std::vector<std::size_t> longest_first(const std::vector<Task>& tasks) const;
   void work(Task& task, const std::stop_token& stop);
+  [[nodiscard]] std::string timed_out_key(const std::string& key) const;
   [[nodiscard]] std::string ask(const engine::Trial& trial, const std::stop_token& stop) const;
   void remember(const engine::Experiment& experiment, double seconds);
 
@@ -59,6 +66,7 @@ class Workers {
   mutable std::mutex mutex_;
   std::map<std::string, double> seconds_;  ///< last wall time by experiment and fidelity
   std::vector<std::string> used_;
+  calibrator::Spent spent_;
   bool interrupted_ = false;
 };
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
 
 #include "calibrator/diagnosis/suspect.hpp"
@@ -28,13 +30,28 @@ void read_fidelity(const Place& place, engine::Fidelity& fidelity) {
   if (index) fidelity = static_cast<engine::Fidelity>(*index);
 }
 
+void read_seconds(const Place& place, std::optional<double>& seconds) {
+  if (!place.exists()) return;
+  const auto value = place.number();
+  if (!value) return;
+  if (*value > 0.0) {
+    seconds = value;
+  } else {
+    place.complain("no evaluation takes no time", "more than 0");
+  }
+}
+
 void read_budget(const Place& place, calibrator::Budget& budget) {
   Members members(place);
   const Place evaluations = members.optional("evaluations");
+  const Place core_seconds = members.optional("core_seconds");
+  const Place wall_seconds = members.optional("wall_seconds");
   const Place batch = members.optional("batch");
   const Place fidelity = members.optional("fidelity");
   const Place confirm_fidelity = members.optional("confirm_fidelity");
+  const Place draft_runs = members.optional("draft_runs");
   const Place method = members.optional("method");
+  const Place warm_start = members.optional("warm_start");
   members.no_others();
   const auto read_count = [](const Place& count, int& into, std::int64_t most) {
     if (!count.exists()) return;
@@ -43,9 +60,19 @@ void read_budget(const Place& place, calibrator::Budget& budget) {
   };
   read_count(evaluations, budget.evaluations, 1'000'000);
   read_count(batch, budget.batch, 1'000);
+  read_seconds(core_seconds, budget.core_seconds);
+  read_seconds(wall_seconds, budget.wall_seconds);
+  if (warm_start.exists()) budget.warm_start = warm_start.truth().value_or(false);
   read_fidelity(fidelity, budget.fidelity);
   budget.confirm_fidelity = budget.fidelity;  // what is searched is what is confirmed, unless said
   read_fidelity(confirm_fidelity, budget.confirm_fidelity);
+  if (draft_runs.exists()) {
+    budget.draft_runs = static_cast<int>(draft_runs.whole(0, 10'000).value_or(0));
+    if (budget.draft_runs > 0 && budget.fidelity == engine::Fidelity::draft) {
+      draft_runs.complain("the search itself is at draft fidelity",
+                          "0, or a budget whose fidelity is standard or paper");
+    }
+  }
   if (!method.exists()) return;
   const auto index = method.one_of(calibrator::method_names, "method");
   if (index) budget.method = static_cast<calibrator::Method>(*index);
@@ -139,6 +166,11 @@ Json print_free(const std::vector<FreeParameter>& free) {
     entry["upper"] = print_value(parameter.upper, parameter.unit);
     entry["unit"] = parameter.unit.symbol;
     entry["scale"] = calibrator::scale_names[static_cast<std::size_t>(parameter.scale)];
+    if (parameter.prior) {
+      entry["prior"] = {
+          {"mean", print_value(parameter.prior->mean, parameter.unit)},
+          {"standard_deviation", print_value(parameter.prior->deviation, parameter.unit)}};
+    }
     result.push_back(std::move(entry));
   }
   return result;
@@ -151,6 +183,21 @@ Json print_tied(const std::vector<calibrator::Tie>& tied) {
     entry["to"] = print_key(tie.to);
     entry["factor"] = tie.factor;
     result.push_back(std::move(entry));
+  }
+  return result;
+}
+
+Json print_constraints(const std::vector<calibrator::Constraint>& constraints) {
+  Json result = Json::array();
+  for (const calibrator::Constraint& constraint : constraints) {
+    Json terms = Json::array();
+    for (const calibrator::Constraint::Term& term : constraint.terms) {
+      terms.push_back(print_key(term.key));
+      terms.back()["coefficient"] = term.coefficient;
+    }
+    result.push_back({{"terms", std::move(terms)},
+                      {"bound", print_value(constraint.bound, constraint.unit)},
+                      {"unit", constraint.unit.symbol}});
   }
   return result;
 }
@@ -172,6 +219,48 @@ Json print_measurement(const Measurement& measurement) {
   return entry;
 }
 
+/// The points of a curve as one measurement with lists along the setting that changes.
+Json print_curve(std::span<const Measurement> points) {
+  const Measurement& first = points.front();
+  Json entry = print_measurement(first);
+  const std::string along = setting_along(points);
+  const engine::ExperimentInfo& info = *engine::find_experiment(first.experiment.name);
+  Unit unit = std::ranges::find(info.settings, along, &FieldInfo::name)->unit;
+  for (const Measurement& point : points) {
+    unit = exact_unit(point.experiment.settings.at(along), unit);
+  }
+  Json& abscissae = entry["settings"][along] = {{"value", Json::array()}, {"unit", unit.symbol}};
+  const auto list = [&](const char* name, auto member) {
+    Json values = Json::array();
+    for (const Measurement& point : points) values.push_back(member(point));
+    entry[name] = std::move(values);
+  };
+  for (const Measurement& point : points) {
+    abscissae["value"].push_back(print_value(point.experiment.settings.at(along), unit));
+  }
+  list("value", [](const Measurement& m) { return print_value(m.value, m.unit); });
+  list("standard_error",
+       [](const Measurement& m) { return print_value(m.standard_error, m.unit); });
+  const auto any = [&](auto member) {
+    return std::ranges::any_of(points, [&](const Measurement& m) { return m.*member != 0; });
+  };
+  if (any(&Measurement::allowance)) {
+    list("allowance", [](const Measurement& m) { return print_value(m.allowance, m.unit); });
+  }
+  if (any(&Measurement::replicates)) {
+    list("replicates", [](const Measurement& m) { return std::max(m.replicates, 1); });
+  }
+  return entry;
+}
+
+Json print_measurements(const std::vector<Measurement>& measurements) {
+  Json result = Json::array();
+  for (const std::span<const Measurement> line : lines_of(measurements)) {
+    result.push_back(line.size() > 1 ? print_curve(line) : print_measurement(line.front()));
+  }
+  return result;
+}
+
 Json print_budget(const calibrator::Budget& budget) {
   const auto name = [](engine::Fidelity fidelity) {
     return engine::fidelity_names[static_cast<std::size_t>(fidelity)];
@@ -180,6 +269,10 @@ Json print_budget(const calibrator::Budget& budget) {
               {"batch", budget.batch},
               {"fidelity", name(budget.fidelity)},
               {"confirm_fidelity", name(budget.confirm_fidelity)}};
+  if (budget.draft_runs > 0) result["draft_runs"] = budget.draft_runs;
+  if (budget.warm_start) result["warm_start"] = true;
+  if (budget.core_seconds) result["core_seconds"] = *budget.core_seconds;
+  if (budget.wall_seconds) result["wall_seconds"] = *budget.wall_seconds;
   if (budget.method != calibrator::Method::repose) {
     result["method"] = calibrator::method_names[static_cast<std::size_t>(budget.method)];
   }
@@ -205,6 +298,7 @@ engine::Result<Calibration, Problems> parse_calibration(std::string_view text) {
   read_fixed(members.optional("fixed"), study);
   read_free(members.optional("free"), study);
   read_tied(members.optional("tied"), study);
+  read_constraints(members.optional("constraints"), study);
   read_measurements(members.optional("measurements"), study);
   read_suspects(members.optional("suspects"), calibration.suspects);
   read_budget(members.optional("budget"), calibration.budget);
@@ -225,10 +319,10 @@ std::string print_calibration(const Calibration& calibration) {
   if (Json fixed = print_fixed(calibration.fixed); !fixed.empty()) document["fixed"] = fixed;
   document["free"] = print_free(calibration.free);
   if (!calibration.tied.empty()) document["tied"] = print_tied(calibration.tied);
-  document["measurements"] = Json::array();
-  for (const Measurement& measurement : calibration.measurements) {
-    document["measurements"].push_back(print_measurement(measurement));
+  if (!calibration.constraints.empty()) {
+    document["constraints"] = print_constraints(calibration.constraints);
   }
+  document["measurements"] = print_measurements(calibration.measurements);
   if (!calibration.suspects.empty()) document["suspects"] = calibration.suspects;
   if (calibration.extends) {
     Json& extends = document["extends"] = {{"calibration", calibration.extends->calibration},

@@ -9,6 +9,7 @@
 #include "engine/evaluate.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/key_json.hpp"
+#include "server/json/learnt_json.hpp"
 #include "server/json/parameters_json.hpp"
 
 namespace repose::server {
@@ -34,22 +35,6 @@ Json print_parameters(const Calibration& calibration, const Fit& fit) {
     entry["learnt"] = number_or_null(parameter.learnt);
     entry["determined"] = parameter.determined;
     result.push_back(std::move(entry));
-  }
-  return result;
-}
-
-Json print_directions(const Calibration& calibration, const Fit& fit) {
-  Json result = Json::array();
-  for (const calibrator::Direction& direction : fit.directions) {
-    Json components = Json::array();
-    for (std::size_t k = 0; k < direction.components.size(); ++k) {
-      Json component = print_key(calibration.free.at(k).key);
-      component["weight"] = number_or_null(direction.components[k]);
-      components.push_back(std::move(component));
-    }
-    result.push_back({{"components", std::move(components)},
-                      {"posterior_to_prior", number_or_null(direction.posterior_to_prior)},
-                      {"learnt", direction.learnt}});
   }
   return result;
 }
@@ -127,10 +112,6 @@ Json print_history(const Calibration& calibration, const Fit& fit) {
 
 // Reading back. nlohmann's at() and get() throw where a member is missing or of another type.
 
-double number(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
-
 std::vector<calibrator::FittedParameter> read_parameters(const Calibration& calibration,
                                                          const Json& json) {
   std::vector<calibrator::FittedParameter> result;
@@ -138,27 +119,13 @@ std::vector<calibrator::FittedParameter> read_parameters(const Calibration& cali
     const FreeParameter& free = calibration.free.at(result.size());
     const double factor = free.unit.factor;
     result.push_back({free.key,
-                      number(entry.at("value")) * factor,
-                      number(entry.at("interval").at(0)) * factor,
-                      number(entry.at("interval").at(1)) * factor,
+                      read_number(entry.at("value")) * factor,
+                      read_number(entry.at("interval").at(0)) * factor,
+                      read_number(entry.at("interval").at(1)) * factor,
                       entry.at("at_bound").at("lower").get<bool>(),
                       entry.at("at_bound").at("upper").get<bool>(),
-                      number(entry.at("learnt")),
+                      read_number(entry.at("learnt")),
                       entry.at("determined").get<bool>()});
-  }
-  return result;
-}
-
-std::vector<calibrator::Direction> read_directions(const Json& json) {
-  std::vector<calibrator::Direction> result;
-  for (const Json& entry : json) {
-    calibrator::Direction direction;
-    for (const Json& component : entry.at("components")) {
-      direction.components.push_back(number(component.at("weight")));
-    }
-    direction.posterior_to_prior = number(entry.at("posterior_to_prior"));
-    direction.learnt = entry.at("learnt").get<bool>();
-    result.push_back(std::move(direction));
   }
   return result;
 }
@@ -170,13 +137,13 @@ std::vector<calibrator::Prediction> read_predictions(const Calibration& calibrat
     const std::size_t index = result.size();
     const double factor = calibration.measurements.at(index).unit.factor;
     result.push_back({index,
-                      number(row.at("predicted")) * factor,
-                      number(row.at("predicted_error")) * factor,
+                      read_number(row.at("predicted")) * factor,
+                      read_number(row.at("predicted_error")) * factor,
                       row.at("replicates").get<int>(),
-                      number(row.at("scatter")) * factor,
-                      number(row.at("emulated")) * factor,
-                      number(row.at("emulated_deviation")) * factor,
-                      number(row.at("z"))});
+                      read_number(row.at("scatter")) * factor,
+                      read_number(row.at("emulated")) * factor,
+                      read_number(row.at("emulated_deviation")) * factor,
+                      read_number(row.at("z"))});
   }
   return result;
 }
@@ -200,16 +167,16 @@ std::vector<HistoryPoint> read_history(const Calibration& calibration, const Jso
     engine::ParameterSet free;
     for (std::size_t k = 0; k < calibration.free.size(); ++k) {
       const FreeParameter& parameter = calibration.free[k];
-      free.set(parameter.key, number(entry.at("parameters").at(k)) * parameter.unit.factor);
+      free.set(parameter.key, read_number(entry.at("parameters").at(k)) * parameter.unit.factor);
     }
     point.parameters = space.at(space.coordinates(free));
     for (const auto& [key, value] : free) point.parameters.set(key, value);
     for (std::size_t i = 0; i < calibration.measurements.size(); ++i) {
-      point.values.push_back(number(entry.at("observed").at(i)) *
+      point.values.push_back(read_number(entry.at("observed").at(i)) *
                              calibration.measurements[i].unit.factor);
     }
-    point.misfit = number(entry.at("misfit"));
-    point.best = number(entry.at("best"));
+    point.misfit = read_number(entry.at("misfit"));
+    point.best = read_number(entry.at("best"));
     result.push_back(std::move(point));
   }
   return result;
@@ -218,8 +185,8 @@ std::vector<HistoryPoint> read_history(const Calibration& calibration, const Jso
 void read_offset(const Calibration& calibration, const Json& json, Fit& fit) {
   for (std::size_t i = 0; i < json.size(); ++i) {
     const double factor = calibration.measurements.at(i).unit.factor;
-    fit.offset.push_back(number(json[i].at("value")) * factor);
-    fit.offset_error.push_back(number(json[i].at("standard_error")) * factor);
+    fit.offset.push_back(read_number(json[i].at("value")) * factor);
+    fit.offset_error.push_back(read_number(json[i].at("standard_error")) * factor);
   }
 }
 
@@ -233,10 +200,12 @@ Fit read_fit(const Calibration& calibration, const Json& json) {
   Fit fit;
   fit.best = read_parameter_set(json.at("best"));
   fit.parameters = read_parameters(calibration, json.at("parameters"));
-  fit.directions = read_directions(json.at("directions"));
+  fit.directions = read_directions(json);
+  fit.posterior = read_posterior(calibration, json);
+  fit.next = read_next(calibration, json);
   fit.predictions = read_predictions(calibration, json.at("measurements"));
   read_offset(calibration, json.at("offset"), fit);
-  fit.misfit = number(json.at("misfit"));
+  fit.misfit = read_number(json.at("misfit"));
   fit.evaluations = json.at("evaluations").get<int>();
   fit.failed = json.at("failed").get<int>();
   fit.stop = stop_named(json.at("stop").get<std::string>());
@@ -254,10 +223,12 @@ std::string print_fit(const Calibration& calibration, const Fit& fit) {
                       {"failed", fit.failed},
                       {"parameters", print_parameters(calibration, fit)},
                       {"measurements", print_measurements(calibration, fit)},
-                      {"directions", print_directions(calibration, fit)},
+                      {"directions", print_directions(calibration, fit.directions)},
+                      {"next_measurements", print_next(calibration, fit.next)},
                       {"offset", print_offset(calibration, fit)},
                       {"remarks", fit.remarks},
                       {"best", print_parameter_set(calibration, fit.best)},
+                      {"posterior", print_posterior(calibration, fit.posterior)},
                       {"history", print_history(calibration, fit)},
                       {"seed", calibration.seed},
                       {"engine_version", engine::version()}};

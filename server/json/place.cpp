@@ -127,6 +127,12 @@ std::optional<std::uint64_t> Place::seed() const {
   return std::nullopt;
 }
 
+std::optional<bool> Place::truth() const {
+  if (exists() && json().is_boolean()) return json().get<bool>();
+  complain("this is said by true or false", "true or false");
+  return std::nullopt;
+}
+
 std::optional<std::string> Place::text(std::size_t longest) const {
   if (exists() && json().is_string()) {
     const auto& text = json().get_ref<const std::string&>();

@@ -33,6 +33,7 @@ class Place {
   [[nodiscard]] std::optional<double> number() const;
   [[nodiscard]] std::optional<std::int64_t> whole(std::int64_t least, std::int64_t most) const;
   [[nodiscard]] std::optional<std::uint64_t> seed() const;
+  [[nodiscard]] std::optional<bool> truth() const;
   [[nodiscard]] std::optional<std::string> text(std::size_t longest) const;
   /// The index of the name that stands there.
   [[nodiscard]] std::optional<std::size_t> one_of(std::span<const std::string_view> names,

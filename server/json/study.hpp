@@ -33,16 +33,25 @@ struct Study {
   std::vector<PlacedTie> ties;
   std::size_t free_named = 0;    ///< entries of `free`, whatever they are worth
   std::size_t fitted_named = 0;  ///< measurements that are not held out, likewise
+  int curves = 0;
+  std::vector<std::string> measured_at;  ///< where each measurement stands
 };
 
 void read_materials(const Place& place, Study& study);
 void read_fixed(const Place& place, Study& study);
 void read_free(const Place& place, Study& study);
 void read_tied(const Place& place, Study& study);
+void read_constraints(const Place& place, Study& study);
 void read_measurements(const Place& place, Study& study);
+void read_measurement(const Place& place, Study& study);
+
+/// A measurement of several values along one setting of its experiment.
+bool is_curve(const Place& place);
+void read_curve(const Place& place, Study& study);
 
 /// What only the whole document tells: ties that lead nowhere, materials that lack a property,
-/// nothing to fit, too little to spend.
+/// constraints that nothing keeps, measurements that contradict each other or that a free parameter
+/// does not reach, nothing to fit, too little to spend.
 void check_study(const Place& document, const Study& study);
 
 }  // namespace repose::server

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 #include <utility>
 
+#include "calibrator/design.hpp"
+#include "calibrator/misfit.hpp"
 #include "engine/catalogue.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/study.hpp"
@@ -112,11 +115,56 @@ void check_tie(const Study::PlacedTie& placed, const Study& study) {
   check_reach(placed, study);
 }
 
+/// Two measurements of one thing that no single truth explains.
+void check_contradictions(const Place& document, const Study& study) {
+  constexpr double most = 5.0;  // combined standard errors
+  const auto& all = study.calibration.measurements;
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    const calibrator::Suite other(std::span(&all[j], 1));
+    for (std::size_t i = 0; i < j; ++i) {
+      if (all[i].observable != all[j].observable || !other.place_of(all[i].experiment)) continue;
+      const double apart = std::abs(all[i].value - all[j].value) /
+                           std::hypot(standard_uncertainty(all[i]), standard_uncertainty(all[j]));
+      if (apart <= most) continue;
+      document.problems().add(
+          {pointer_to(study.measured_at[j], "value"),
+           "this contradicts " + study.measured_at[i] + ": the same " + all[j].observable + ", " +
+               short_number(apart) + " standard errors apart",
+           short_number(all[j].value / all[j].unit.factor),
+           "within 5 standard errors of " + short_number(all[i].value / all[j].unit.factor) +
+               ", a larger standard_error, or settings that tell the two apart"});
+    }
+  }
+}
+
+/// Whether any parameter set within the bounds keeps every constraint. Only of a study without
+/// another problem.
+void check_constraints(const Place& document, const Study& study) {
+  if (study.calibration.constraints.empty() || !document.problems().empty()) return;
+  const auto method = study.calibration.budget.method;
+  if (method != calibrator::Method::repose) {
+    document.problems().add(
+        {"/budget/method",
+         "the baselines know no constraints",
+         std::string(calibrator::method_names.at(static_cast<std::size_t>(method))),
+         "repose, or no constraints"});
+    return;
+  }
+  const calibrator::SearchSpace space(study.calibration);
+  if (!calibrator::allowed_points(space, 1, study.calibration.seed).empty()) return;
+  document.problems().add({"/constraints",
+                           "no parameter set within the bounds was found that keeps the "
+                           "constraints",
+                           "0 of 100000 tried",
+                           "wider bounds, or constraints that leave more"});
+}
+
 }  // namespace
 
 void check_study(const Place& document, const Study& study) {
   check_materials(document, study);
   for (const Study::PlacedTie& tie : study.ties) check_tie(tie, study);
+  check_contradictions(document, study);
   if (study.free_named == 0) {
     document.problems().add(
         {"/free",
@@ -142,6 +190,7 @@ void check_study(const Place& document, const Study& study) {
                              std::to_string(spent),
                              std::to_string(fewest) + " or more"});
   }
+  check_constraints(document, study);
 }
 
 }  // namespace repose::server

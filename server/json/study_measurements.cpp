@@ -140,6 +140,8 @@ bool read_numbers(const Numbers& given,
   return possible;
 }
 
+}  // namespace
+
 void read_measurement(const Place& place, Study& study) {
   Members members(place);
   if (!members.is_object()) {
@@ -165,13 +167,15 @@ void read_measurement(const Place& place, Study& study) {
               {.value = [&](const engine::FieldInfo& field, double value, const Place&) {
                 measurement.experiment.settings[std::string(field.name)] = value;
               }});
-  if (good) study.calibration.measurements.push_back(std::move(measurement));
+  if (!good) return;
+  study.calibration.measurements.push_back(std::move(measurement));
+  study.measured_at.push_back(place.pointer());
 }
 
-}  // namespace
-
 void read_measurements(const Place& place, Study& study) {
-  for (const Place& element : place.elements()) read_measurement(element, study);
+  for (const Place& element : place.elements()) {
+    is_curve(element) ? read_curve(element, study) : read_measurement(element, study);
+  }
 }
 
 }  // namespace repose::server

@@ -65,6 +65,32 @@ bool in_order(const calibrator::FreeParameter& free, const Place& lower) {
   return true;
 }
 
+/// What is known beforehand, in the unit of the bounds.
+std::optional<calibrator::Prior> read_prior(const Place& place,
+                                            const calibrator::FreeParameter& free,
+                                            const engine::FieldInfo& field,
+                                            const std::string& what) {
+  Members members(place);
+  const Place mean_place = members.required("mean", "the value it is thought to have");
+  const Place deviation_place = members.required("standard_deviation", "how surely");
+  members.no_others();
+  if (!mean_place.exists() || !deviation_place.exists()) return std::nullopt;
+  const auto mean = read_bounded(mean_place, free.unit, field, what);
+  const auto deviation = deviation_place.number();
+  if (!mean || !deviation) return std::nullopt;
+  if (!(*deviation > 0.0)) {
+    deviation_place.complain("a standard deviation is above zero", "more than 0");
+    return std::nullopt;
+  }
+  if (*mean < free.lower || *mean > free.upper) {
+    mean_place.complain("the prior's mean lies outside the bounds of the search",
+                        short_number(free.lower / free.unit.factor) + " to " +
+                            short_number(free.upper / free.unit.factor));
+    return std::nullopt;
+  }
+  return calibrator::Prior{*mean, *deviation * free.unit.factor};
+}
+
 void read_free_one(const Place& place, Study& study) {
   Members members(place);
   const auto named = read_key(members);
@@ -72,6 +98,7 @@ void read_free_one(const Place& place, Study& study) {
   const Place upper_place = members.required("upper", "the largest value to try");
   const Place unit_place = members.required("unit", "the unit of both bounds");
   const Place scale_place = members.optional("scale");
+  const Place prior_place = members.optional("prior");
   members.no_others();
 
   calibrator::FreeParameter free;
@@ -91,6 +118,10 @@ void read_free_one(const Place& place, Study& study) {
   free.lower = *lower;
   free.upper = *upper;
   free.unit = *unit;
+  if (prior_place.exists()) {
+    free.prior = read_prior(prior_place, free, *named->field, named->text);
+    if (!free.prior) return;
+  }
   if (in_order(free, lower_place)) study.calibration.free.push_back(std::move(free));
 }
 

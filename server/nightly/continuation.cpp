@@ -91,18 +91,19 @@ calibrator::Fit calibrate_from_store(const db::Store& store,
                                      std::int64_t id,
                                      const Calibration& calibration,
                                      const calibrator::Evaluator& evaluator,
-                                     const std::stop_token& stop,
-                                     const calibrator::ProgressObserver& observer) {
+                                     calibrator::CalibrateOptions options) {
   const auto continuation = continuation_of(store, id);
   if (!continuation) {
-    const auto known = inherited_runs(store, calibration);
-    return calibrator::calibrate(calibration, evaluator, stop, observer, known);
+    const auto known = inherited_runs(store, calibration, store.calibration(id)->created_at);
+    options.known = known;
+    return calibrator::calibrate(calibration, evaluator, options);
   }
   const auto check = recheck_published(store, calibration, *continuation, evaluator);
   if (check && check->passed) return check->fit;
   auto known = runs_known(store, calibration, *continuation);
   if (check) known.insert(known.end(), check->runs.begin(), check->runs.end());
-  auto fit = calibrator::calibrate(calibration, evaluator, stop, observer, known);
+  options.known = known;
+  auto fit = calibrator::calibrate(calibration, evaluator, options);
   if (check) fit.evaluations += check->fit.evaluations;
   return fit;
 }

@@ -33,12 +33,12 @@ std::optional<calibrator::Recheck> recheck_published(const db::Store& store,
                                                      const Continuation& continuation,
                                                      const calibrator::Evaluator& evaluator);
 
-/// calibrate(), from what is known: no search where the answer that it continues still holds.
+/// calibrate(), with what is known in place of `options.known`: no search where the answer that it
+/// continues still holds.
 calibrator::Fit calibrate_from_store(const db::Store& store,
                                      std::int64_t id,
                                      const calibrator::Calibration& calibration,
                                      const calibrator::Evaluator& evaluator,
-                                     const std::stop_token& stop,
-                                     const calibrator::ProgressObserver& observer);
+                                     calibrator::CalibrateOptions options);
 
 }  // namespace repose::server

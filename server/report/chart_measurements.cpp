@@ -67,6 +67,30 @@ void draw_parity_row(Svg& svg,
       "predicted " + with_error(prediction.predicted, prediction.standard_error, measurement.unit));
 }
 
+void draw_residual(Svg& svg, double top, const Axis& x, const FitLine& line) {
+  const Measurement& measurement = line.measured.front();
+  std::string note = held_out(measurement) ? "held out" : settings_label(measurement.experiment);
+  if (line.is_curve()) {
+    note = std::to_string(line.measured.size()) + " points, root mean square";
+  }
+  const double shift = note.empty() ? 0.0 : -6.0;
+  svg.text(0.0, top + 25.0 + shift, measurement_label(measurement), "start", "label small");
+  svg.text(0.0, top + 33.0, note, "start", "tick left");
+  const double z = line.z(), reach = x.upper;
+  if (!std::isfinite(z)) return;
+  const double end = x(std::clamp(z, -reach, reach));
+  const std::string style = std::string("bar ") + grade(z);
+  svg.rect(std::min(x(0.0), end), top + 12.0, std::abs(end - x(0.0)), 18.0, style);
+  const bool right = z >= 0.0;
+  const bool room = std::abs(z) < reach - 0.25 * reach;
+  const double place = room ? end + (right ? 5.0 : -5.0) : end + (right ? -5.0 : 5.0);
+  svg.text(place,
+           top + 25.0,
+           fixed_text(z, 1),
+           right == room ? "start" : "end",
+           room ? "value" : "value inside");
+}
+
 void draw_parity_legend(Svg& svg, double top) {
   svg.rect(8.0, top, 44.0, 14.0, "band two");
   svg.rect(19.0, top, 22.0, 14.0, "band one");
@@ -87,14 +111,19 @@ const char* grade(double z) {
 
 std::string parity_chart(const Calibration& calibration, const Fit& fit) {
   constexpr double row = 72.0, head = 26.0;
-  Svg svg(width,
-          head + row * static_cast<double>(fit.predictions.size()),
-          "Measured and predicted values, each on its own axis");
+  const std::vector<FitLine> lines = lines_of(calibration, fit);
+  double height = head;
+  for (const FitLine& line : lines) height += line.is_curve() ? curve_height : row;
+  Svg svg(width, height, "Measured and predicted values, each on its own axis");
   draw_parity_legend(svg, 0.0);
   double top = head;
-  for (const Prediction& prediction : fit.predictions) {
-    draw_parity_row(svg, top, calibration.measurements.at(prediction.measurement), prediction);
-    top += row;
+  for (const FitLine& line : lines) {
+    if (line.is_curve()) {
+      draw_curve(svg, top, width, line);
+    } else {
+      draw_parity_row(svg, top, line.measured.front(), line.predicted.front());
+    }
+    top += line.is_curve() ? curve_height : row;
   }
   return svg.str();
 }
@@ -102,37 +131,20 @@ std::string parity_chart(const Calibration& calibration, const Fit& fit) {
 std::string residual_chart(const Calibration& calibration, const Fit& fit) {
   constexpr double row = 42.0, foot = 40.0, left = 212.0;
   constexpr double most = 8.0;  // standard errors drawn to scale; beyond, the bar is cut
+  const std::vector<FitLine> lines = lines_of(calibration, fit);
   double reach = 3.0;
-  for (const Prediction& prediction : fit.predictions) {
-    if (std::isfinite(prediction.z)) reach = std::max(reach, std::abs(prediction.z) + 1.0);
+  for (const FitLine& line : lines) {
+    if (std::isfinite(line.z())) reach = std::max(reach, std::abs(line.z()) + 1.0);
   }
   reach = std::min(std::ceil(reach), most);
-  const double bottom = row * static_cast<double>(fit.predictions.size());
+  const double bottom = row * static_cast<double>(lines.size());
   Svg svg(width, bottom + foot, "Differences between predicted and measured in standard errors");
   const Axis x{-reach, reach, left, width - 10.0};
   svg.rect(x(-2.0), 0.0, x(2.0) - x(-2.0), bottom, "band two");
   svg.rect(x(-1.0), 0.0, x(1.0) - x(-1.0), bottom, "band one");
   double top = 0.0;
-  for (const Prediction& prediction : fit.predictions) {
-    const Measurement& measurement = calibration.measurements.at(prediction.measurement);
-    const std::string settings =
-        held_out(measurement) ? "held out" : settings_label(measurement.experiment);
-    const double shift = settings.empty() ? 0.0 : -6.0;
-    svg.text(0.0, top + 25.0 + shift, measurement_label(measurement), "start", "label small");
-    svg.text(0.0, top + 33.0, settings, "start", "tick left");
-    if (std::isfinite(prediction.z)) {
-      const double end = x(std::clamp(prediction.z, -reach, reach));
-      const std::string style = std::string("bar ") + grade(prediction.z);
-      svg.rect(std::min(x(0.0), end), top + 12.0, std::abs(end - x(0.0)), 18.0, style);
-      const bool right = prediction.z >= 0.0;
-      const bool room = std::abs(prediction.z) < reach - 0.25 * reach;
-      const double place = room ? end + (right ? 5.0 : -5.0) : end + (right ? -5.0 : 5.0);
-      svg.text(place,
-               top + 25.0,
-               fixed_text(prediction.z, 1),
-               right == room ? "start" : "end",
-               room ? "value" : "value inside");
-    }
+  for (const FitLine& line : lines) {
+    draw_residual(svg, top, x, line);
     top += row;
   }
   svg.line(x(0.0), 0.0, x(0.0), bottom, "measured");

@@ -18,22 +18,13 @@ namespace {
 
 constexpr double width = 480.0;  // pixels at full size, as all below
 
-/// Where a value lies between its bounds, 0 to 1, by the parameter's own scale.
-double share(const FreeParameter& free, double value) {
-  const double inside = std::clamp(value, free.lower, free.upper);
-  if (free.scale == calibrator::Scale::log && free.lower > 0.0) {
-    return std::log(inside / free.lower) / std::log(free.upper / free.lower);
-  }
-  return (inside - free.lower) / (free.upper - free.lower);
-}
-
 std::string in_unit(double value, const engine::Unit& unit) {
   return number_text(value / unit.factor, 3);
 }
 
 void draw_interval(Svg& svg, double top, const FreeParameter& free, const FittedParameter& fitted) {
   constexpr double left = 8.0, right = width - 8.0;
-  const auto x = [&](double value) { return left + (right - left) * share(free, value); };
+  const auto x = [&](double value) { return left + (right - left) * share_of_range(free, value); };
   const double middle = top + 30.0;
   const std::string best = in_unit(fitted.value, free.unit) + unit_suffix(free.unit);
   const std::string interval =
@@ -61,6 +52,14 @@ void draw_interval(Svg& svg, double top, const FreeParameter& free, const Fitted
 }
 
 }  // namespace
+
+double share_of_range(const FreeParameter& free, double value) {
+  const double inside = std::clamp(value, free.lower, free.upper);
+  if (free.scale == calibrator::Scale::log && free.lower > 0.0) {
+    return std::log(inside / free.lower) / std::log(free.upper / free.lower);
+  }
+  return (inside - free.lower) / (free.upper - free.lower);
+}
 
 std::string interval_chart(const Calibration& calibration, const Fit& fit) {
   constexpr double row = 66.0;

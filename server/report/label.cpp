@@ -62,6 +62,26 @@ std::string settings_label(const engine::Experiment& experiment) {
   return text;
 }
 
+std::string line_label(std::span<const calibrator::Measurement> line) {
+  const std::string label = measurement_label(line.front());
+  if (line.size() == 1) return label;
+  return label + ", " + std::to_string(line.size()) + " points along " +
+         words(calibrator::setting_along(line));
+}
+
+engine::Unit observable_unit(const calibrator::Calibration& calibration,
+                             std::string_view experiment,
+                             std::string_view observable) {
+  for (const calibrator::Measurement& m : calibration.measurements) {
+    if (m.experiment.name == experiment && m.observable == observable) return m.unit;
+  }
+  const engine::ExperimentInfo* info = engine::find_experiment(experiment);
+  if (info == nullptr) return engine::unit::one;
+  const auto found =
+      std::ranges::find(info->observables, observable, &engine::ObservableInfo::name);
+  return found != info->observables.end() ? found->unit : engine::unit::one;
+}
+
 engine::Unit parameter_unit(const calibrator::Calibration& calibration,
                             const engine::ParameterKey& key) {
   const auto& free = calibration.free;

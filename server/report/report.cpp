@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/report/chart.hpp"
+#include "server/report/fit_line.hpp"
 #include "server/report/label.hpp"
 #include "server/report/number_text.hpp"
 #include "server/report/page.hpp"
@@ -19,7 +20,6 @@ using calibrator::Calibration;
 using calibrator::Fit;
 using calibrator::FittedParameter;
 using calibrator::Measurement;
-using calibrator::Prediction;
 
 namespace {
 
@@ -69,34 +69,26 @@ std::string verdict_section(const Calibration& calibration, const Fit& fit) {
   return text + "</dl>\n</div>\n";
 }
 
-std::string measurement_row(const Measurement& measurement, const Prediction& prediction) {
+std::string measurement_row(const FitLine& line) {
+  const Measurement& measurement = line.measured.front();
   const engine::Unit& unit = measurement.unit;
-  std::string note = settings_label(measurement.experiment);
+  std::string note = line.is_curve() ? "" : settings_label(measurement.experiment);
   if (measurement.role == calibrator::Role::held_out) {
     note += note.empty() ? "held out" : ", held out";
   }
-  std::string text = "<tr><td>" + escaped(measurement_label(measurement));
+  std::string text = "<tr><td>" + escaped(line_label(line.measured));
   if (!note.empty()) text += element("small", note);
   if (!measurement.source.empty()) text += element("small", measurement.source);
-  text += "</td><td data-head=\"measured\"><span>" +
-          escaped(with_error(measurement.value, measurement.standard_error, unit));
-  if (measurement.allowance > 0.0) {
+  text += "</td><td data-head=\"measured\"><span>" + escaped(measured_text(line));
+  double allowance = 0.0;
+  for (const Measurement& point : line.measured) allowance = std::max(allowance, point.allowance);
+  if (allowance > 0.0) {
     text += "<small class=\"warning\">allowance " +
-            escaped(number_text(measurement.allowance / unit.factor) + unit_suffix(unit)) +
-            "</small>";
+            escaped(number_text(allowance / unit.factor) + unit_suffix(unit)) + "</small>";
   }
-  text += "</span></td>" +
-          cell("predicted", with_error(prediction.predicted, prediction.standard_error, unit));
-  const double difference = (prediction.predicted - measurement.value) / unit.factor;
-  const double error = measurement.standard_error / unit.factor;
-  std::string shown = "-";
-  if (!std::isnan(difference)) shown = fixed_text(difference, decimals_for(difference, error));
-  const bool plus = difference > 0.0 && shown.find_first_of("123456789") != std::string::npos;
-  text += cell("difference", plus ? "+" + shown : shown);
-  const std::string z = std::isfinite(prediction.z)
-                            ? (prediction.z > 0.0 ? "+" : "") + fixed_text(prediction.z, 2)
-                            : "-";
-  return text + cell("z", z, grade(prediction.z)) + "</tr>\n";
+  return text + "</span></td>" + cell("predicted", predicted_text(line)) +
+         cell("difference", difference_text(line)) + cell("z", z_text(line), grade(line.z())) +
+         "</tr>\n";
 }
 
 std::string measurements_section(const Calibration& calibration, const Fit& fit) {
@@ -104,14 +96,13 @@ std::string measurements_section(const Calibration& calibration, const Fit& fit)
       "<section>\n<h2>Measured and predicted</h2>\n<div class=\"scroll\"><table>\n"
       "<tr><th>measurement</th><th>measured</th><th>predicted</th>"
       "<th>difference</th><th>z</th></tr>\n";
-  for (const Prediction& prediction : fit.predictions) {
-    text += measurement_row(calibration.measurements.at(prediction.measurement), prediction);
-  }
+  for (const FitLine& line : lines_of(calibration, fit)) text += measurement_row(line);
   text += "</table></div>\n";
   text += element("p",
                   "± is one standard error. z is the difference in combined standard errors of "
                   "measurement, stated allowance and simulation. Predicted values are means of "
-                  "fresh replicates at the best set.",
+                  "fresh replicates at the best set. A curve is one line: its ends, and the root "
+                  "mean square (rms) over its points.",
                   "quiet-text");
   text += "\n<div class=\"pair\">\n<div><h3>Each in its own unit</h3>\n" +
           parity_chart(calibration, fit) +
@@ -143,9 +134,14 @@ std::string parameter_row(const Calibration& calibration, std::size_t index, con
   } else if (fitted.lower_at_bound || fitted.upper_at_bound) {
     interval += fitted.lower_at_bound ? " (lower bound)" : " (upper bound)";
   }
+  std::string posterior = "-";
+  if (index < fit.posterior.quantiles.size()) {
+    const auto& quantiles = fit.posterior.quantiles[index];
+    posterior = shown(quantiles.front()) + " to " + shown(quantiles.back());
+  }
   return "<tr>" + element("td", parameter_label(free.key)) +
          cell("best", shown(fitted.value) + unit_suffix(free.unit)) +
-         cell("95 % interval", interval) +
+         cell("95 % interval", interval) + cell("90 % of posterior", posterior) +
          cell("learnt", fixed_text(100.0 * std::max(0.0, fitted.learnt), 0) + " %") +
          cell("",
               fitted.determined ? "determined" : "not determined",
@@ -157,13 +153,15 @@ std::string parameters_section(const Calibration& calibration, const Fit& fit) {
   std::string text =
       "<section>\n<h2>Free parameters</h2>\n<div class=\"scroll\"><table>\n"
       "<tr><th>parameter</th><th>best</th><th>95 % interval</th>"
-      "<th>learnt</th><th></th></tr>\n";
+      "<th>90 % of posterior</th><th>learnt</th><th></th></tr>\n";
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     text += parameter_row(calibration, i, fit);
   }
   text += "</table></div>\n";
   text +=
       element("p",
+              "The 95 % interval is where some set fits almost as well as the best, by profile "
+              "likelihood; the posterior weighs all sets. "
               "Learnt is the share of the prior variance that the data removed. A parameter "
               "whose interval reaches a bound is not determined: its hatched range fits as well "
               "as its best value.",
@@ -179,6 +177,33 @@ std::string parameters_section(const Calibration& calibration, const Fit& fit) {
             "</div>\n";
   }
   return text + "</div>\n</section>\n";
+}
+
+std::string next_section(const Calibration& calibration, const Fit& fit) {
+  const std::vector<std::string> sentences = next_sentences(calibration, fit);
+  if (sentences.empty()) return {};
+  std::string text = "<section>\n<h2>What to measure next</h2>\n<ol>\n";
+  for (const std::string& sentence : sentences) text += element("li", sentence) + "\n";
+  return text + "</ol>\n" +
+         element("p",
+                 "Ranked by how much each would narrow the free parameters together. What the "
+                 "experiments of the study show besides what was measured, and each measurement "
+                 "again with half its standard error: neither needs another simulation.",
+                 "quiet-text") +
+         "\n</section>\n";
+}
+
+std::string posterior_section(const Calibration& calibration, const Fit& fit) {
+  if (fit.posterior.samples.empty() || calibration.free.size() < 2) return {};
+  return "<section>\n<h2>The free parameters together</h2>\n" + posterior_chart(calibration, fit) +
+         element("p",
+                 "Samples of the joint posterior, each axis from bound to bound. A narrow slanted "
+                 "cloud is a combination that the data fix while its parts stay open. " +
+                     count_text(static_cast<unsigned long long>(
+                         std::max(0.0, fit.posterior.effective_samples))) +
+                     " effective samples, split R-hat " + fixed_text(fit.posterior.r_hat, 3) + ".",
+                 "quiet-text") +
+         "\n</section>\n";
 }
 
 std::string search_section(const Calibration& calibration, const Fit& fit) {
@@ -243,6 +268,7 @@ std::string body(const CalibrationDocument& document, std::span<const ReportPict
   const Fit& fit = *document.fit;
   return verdict_section(calibration, fit) + measurements_section(calibration, fit) +
          pictures_section(pictures) + parameters_section(calibration, fit) +
+         posterior_section(calibration, fit) + next_section(calibration, fit) +
          search_section(calibration, fit) + set_section(calibration, fit);
 }
 

@@ -135,6 +135,7 @@ figcaption b { color: var(--ink); }
 .chart .up { fill: #1f78b4; }
 .chart .down { fill: #c8641b; }
 .chart .faint { fill-opacity: .6; }
+.chart .speck { stroke: var(--accent); stroke-width: 3; stroke-linecap: round; stroke-opacity: .45; }
 .chart .expected { stroke: var(--quiet); stroke-dasharray: 4 4; }
 .chart .expectation { fill: none; stroke: var(--ink); stroke-width: 1.8; }
 .chart .failed { stroke: var(--poor); stroke-width: 1.8; }

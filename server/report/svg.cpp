@@ -66,6 +66,10 @@ void Svg::circle(double x, double y, double radius, std::string_view style, std:
   body_ += hint.empty() ? "/>" : "><title>" + escaped(hint) + "</title></circle>";
 }
 
+void Svg::dot(double x, double y) {
+  body_ += "<path class=\"speck\" d=\"M" + px(x) + " " + px(y) + "h0\"/>";
+}
+
 void Svg::diamond(double x, double y, double radius, std::string_view style) {
   body_ += "<path d=\"M" + px(x) + " " + px(y - radius) + "L" + px(x + radius) + " " + px(y) + "L" +
            px(x) + " " + px(y + radius) + "L" + px(x - radius) + " " + px(y) + "Z\"" +

@@ -22,6 +22,8 @@ class Svg {
   /// `hint` is what a pointer shows over it; may be empty.
   void circle(
       double x, double y, double radius, std::string_view style, std::string_view hint = {});
+  /// One of a cloud of points.
+  void dot(double x, double y);
   /// A square on its corner.
   void diamond(double x, double y, double radius, std::string_view style);
   void polyline(const std::vector<std::pair<double, double>>& points, std::string_view style);

@@ -130,6 +130,37 @@ std::vector<std::string> open_directions(const Calibration& calibration, const F
   return sentences;
 }
 
+/// "a x b^0.5 / c^0.3": what is fixed near the best set, small powers left out.
+std::string product_text(const Calibration& calibration, const Direction& direction) {
+  constexpr double counts = 0.1;
+  std::string over, under;
+  for (std::size_t k = 0; k < direction.powers.size(); ++k) {
+    const double power = std::abs(direction.powers[k]);
+    if (power < counts) continue;
+    std::string factor = parameter_label(calibration.free.at(k).key);
+    if (power < 0.95) factor += "^" + number_text(power, 2);
+    std::string& side = direction.powers[k] > 0.0 ? over : under;
+    side += (side.empty() ? "" : " × ") + factor;
+  }
+  if (under.empty()) return over;
+  return (over.empty() ? "1" : over) + " / " +
+         (under.find(" × ") == std::string::npos ? under : "[" + under + "]");
+}
+
+/// The learnt directions as products of powers, best known first.
+std::vector<std::string> learnt_products(const Calibration& calibration, const Fit& fit) {
+  std::vector<std::string> sentences;
+  for (const Direction& direction : fit.directions) {
+    if (!direction.learnt || !(direction.product_error > 0.0)) continue;
+    const double error = direction.product_error;
+    const std::string how_well = error < 0.5 ? "to " + number_text(100.0 * error, 2) + " %"
+                                             : "to a factor of " + number_text(std::exp(error), 2);
+    sentences.push_back("Near the best set the data fix " + product_text(calibration, direction) +
+                        " " + how_well + ".");
+  }
+  return sentences;
+}
+
 }  // namespace
 
 Verdict verdict(const Calibration& calibration, const Fit& fit) {
@@ -201,6 +232,7 @@ std::vector<std::string> learnt_sentences(const Calibration& calibration, const 
     sentences.push_back(count_of(learnt, "combination") + " of the " +
                         count_of(fit.directions.size(), "free parameter") +
                         (learnt == 1 ? " was" : " were") + " learnt.");
+    std::ranges::move(learnt_products(calibration, fit), std::back_inserter(sentences));
     std::ranges::move(open_directions(calibration, fit), std::back_inserter(sentences));
   }
   const auto held_out = predictions_of(calibration, fit, Role::held_out);
@@ -208,6 +240,26 @@ std::vector<std::string> learnt_sentences(const Calibration& calibration, const 
     sentences.push_back("Set aside and predicted within two standard errors: " +
                         std::to_string(within(held_out, 2.0)) + " of " +
                         count_of(held_out.size(), "measurement") + ".");
+  }
+  return sentences;
+}
+
+std::vector<std::string> next_sentences(const Calibration& calibration, const Fit& fit) {
+  std::vector<std::string> sentences;
+  for (const calibrator::NextMeasurement& next : fit.next) {
+    calibrator::Measurement what;
+    what.experiment = next.experiment;
+    what.observable = next.observable;
+    std::string name = measurement_label(what);
+    const std::string settings = settings_label(next.experiment);
+    if (!settings.empty()) name += " (" + settings + ")";
+    const engine::Unit unit = observable_unit(calibration, next.experiment.name, next.observable);
+    const auto percent = [](double learnt) { return fixed_text(100.0 * std::max(0.0, learnt), 0); };
+    sentences.push_back(name + (next.again ? " once more, to ± " : ", to ± ") +
+                        number_text(next.standard_error / unit.factor, 2) + unit_suffix(unit) +
+                        ": most about " + parameter_label(calibration.free.at(next.parameter).key) +
+                        ", learnt to " + percent(next.learnt) + " % instead of " +
+                        percent(fit.parameters.at(next.parameter).learnt) + " %.");
   }
   return sentences;
 }

@@ -24,4 +24,8 @@ std::string stop_sentence(calibrator::StopReason stop);
 std::vector<std::string> learnt_sentences(const calibrator::Calibration& calibration,
                                           const calibrator::Fit& fit);
 
+/// What to measure next, one sentence each, best first.
+std::vector<std::string> next_sentences(const calibrator::Calibration& calibration,
+                                        const calibrator::Fit& fit);
+
 }  // namespace repose::server

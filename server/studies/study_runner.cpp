@@ -183,7 +183,7 @@ class Runner {
       note(evaluations);
       return evaluations;
     };
-    found.fit = calibrator::calibrate(found.calibration, evaluator, stop_);
+    found.fit = calibrator::calibrate(found.calibration, evaluator, {.stop = stop_});
     std::vector<Question> questions;
     for (const StudyExperiment& what : study_.experiments) {
       questions.push_back(question(what,

@@ -71,10 +71,12 @@ TEST_CASE("a baseline that is cancelled stops asking and says its best so far", 
     INFO(name_of(method));
     const toy::Study study = study_for(method, 0.1);
     std::stop_source source;
-    const Fit fit = calibrate(
-        study.calibration, toy::evaluator(study), source.get_token(), [&](const Progress& now) {
-          if (now.evaluations_done >= 20) source.request_stop();
-        });
+    const auto stop_at_20 = [&](const Progress& now) {
+      if (now.evaluations_done >= 20) source.request_stop();
+    };
+    const Fit fit = calibrate(study.calibration,
+                              toy::evaluator(study),
+                              {.stop = source.get_token(), .observer = stop_at_20});
     CHECK(fit.stop == StopReason::cancelled);
     CHECK(fit.evaluations >= 20);
     CHECK(fit.evaluations < 40);

@@ -261,13 +261,12 @@ TEST_CASE("a cancelled calibration returns what it knows", "[calibrator]") {
   const toy::Study study = toy::two_of_three(0.5);
   std::stop_source source;
   int calls = 0;
-  const Fit fit = calibrate(
-      study.calibration,
-      [&](std::span<const engine::Trial> trials) {
-        if (++calls == 2) source.request_stop();
-        return toy::evaluator(study)(trials);
-      },
-      source.get_token());
+  const Fit fit = calibrate(study.calibration,
+                            [&](std::span<const engine::Trial> trials) {
+                              if (++calls == 2) source.request_stop();
+                              return toy::evaluator(study)(trials);
+                            },
+                            {.stop = source.get_token()});
   CHECK(fit.stop == StopReason::cancelled);
   CHECK(calls == 2);
   CHECK(fit.parameters.size() == 3);
@@ -275,7 +274,8 @@ TEST_CASE("a cancelled calibration returns what it knows", "[calibrator]") {
 
   source = {};
   source.request_stop();
-  const Fit nothing = calibrate(study.calibration, toy::evaluator(study), source.get_token());
+  const Fit nothing =
+      calibrate(study.calibration, toy::evaluator(study), {.stop = source.get_token()});
   CHECK(nothing.stop == StopReason::cancelled);
   CHECK(nothing.evaluations == 0);
 }
@@ -312,8 +312,9 @@ TEST_CASE("one free parameter and none are calibrations too", "[calibrator]") {
 TEST_CASE("progress is told after every batch, and ends with the best set", "[calibrator]") {
   const toy::Study study = toy::two_of_three(0.5);
   std::vector<Progress> told;
-  const Fit fit = calibrate(
-      study.calibration, toy::evaluator(study), {}, [&](const Progress& p) { told.push_back(p); });
+  const Fit fit = calibrate(study.calibration,
+                            toy::evaluator(study),
+                            {.observer = [&](const Progress& p) { told.push_back(p); }});
   REQUIRE(told.size() >= 4);
   CHECK(told.front().stage == "start");
   CHECK(std::isnan(told.front().misfit));
@@ -321,4 +322,83 @@ TEST_CASE("progress is told after every batch, and ends with the best set", "[ca
   CHECK(told.back().evaluations_planned == 60);
   CHECK(told.back().predicted.size() == 2);
   CHECK(std::ranges::is_sorted(told, {}, &Progress::evaluations_done));
+}
+
+TEST_CASE("no run is asked for, and no set recommended, that breaks a constraint", "[calibrator]") {
+  toy::Study study = toy::two_of_three(0.3);
+  const auto& free = study.calibration.free;
+  // The truth (0.4, 0.6) is cut off; by symmetry the nearest is (0.35, 0.55), one sigma from both.
+  study.calibration.constraints.push_back({{{free[0].key, 1.0}, {free[1].key, 1.0}}, 0.9, {}});
+  const Fit fit = solve(study);
+  check_complete(study, fit);
+  for (const HistoryPoint& point : fit.history) {
+    CHECK(point.parameters.get_or(free[0].key, 9.0) + point.parameters.get_or(free[1].key, 9.0) <=
+          0.9);
+  }
+  CHECK(fit.parameters[0].value == Approx(0.35).margin(0.05));
+  CHECK(fit.parameters[1].value == Approx(0.55).margin(0.05));
+  CHECK(fit.parameters[0].value + fit.parameters[1].value > 0.88);  // up against it
+}
+
+TEST_CASE("a prior decides what the data leave open", "[calibrator]") {
+  toy::Study study = toy::two_of_three(0.3);
+  study.calibration.free[2].prior = Prior{0.3, 0.05};
+  const Fit fit = solve(study);
+  check_complete(study, fit);
+  CHECK(fit.stop == StopReason::hit);
+  CHECK(fit.parameters[2].value == Approx(0.3).margin(0.05));
+  CHECK(fit.parameters[2].lower == Approx(0.3 - 1.96 * 0.05).margin(0.03));
+  CHECK(fit.parameters[2].upper == Approx(0.3 + 1.96 * 0.05).margin(0.03));
+  CHECK(fit.parameters[2].learnt < 0.1);  // it was known, not learnt
+  CHECK(fit.posterior.quantiles[2][1] == Approx(0.3).margin(0.02));
+}
+
+TEST_CASE("a limit of time ends the search with its confirmation paid for", "[calibrator]") {
+  toy::Study study = toy::granular(6, 1.5, 1, 70, 4);
+  study.calibration.budget.core_seconds = 50.0;
+  int asked = 0;
+  const auto evaluator = [&](std::span<const engine::Trial> trials) {
+    asked += static_cast<int>(trials.size());
+    return toy::evaluator(study)(trials);
+  };
+  const Meter meter = [&] { return Spent{2.0 * asked, 0.5 * asked}; };
+  const Fit by_cores = calibrate(study.calibration, evaluator, {.meter = meter});
+  CHECK(by_cores.stop == StopReason::budget);
+  CHECK(asked <= 25);
+  CHECK(asked > 20);
+  CHECK(by_cores.predictions[0].replicates >= 4);
+  CHECK(mentions(by_cores, "The limit of time ended the search"));
+
+  asked = 0;
+  check_equal(by_cores, calibrate(study.calibration, evaluator, {.meter = meter}));
+
+  study.calibration.budget.core_seconds = {};
+  study.calibration.budget.wall_seconds = 12.5;
+  asked = 0;
+  CHECK(calibrate(study.calibration, evaluator, {.meter = meter}).evaluations ==
+        by_cores.evaluations);
+}
+
+TEST_CASE("the next batch is a function of what was answered before", "[calibrator]") {
+  const toy::Study study = toy::granular(6, 0.5, 4, 40, 4);
+  std::vector<std::vector<engine::Trial>> batches;
+  std::vector<std::vector<engine::Evaluation>> answers;
+  calibrate(study.calibration, [&](std::span<const engine::Trial> trials) {
+    batches.emplace_back(trials.begin(), trials.end());
+    answers.push_back(toy::evaluator(study)(trials));
+    return answers.back();
+  });
+  REQUIRE(batches.size() > 4);
+  // Killed after each batch in turn: the fresh process is told what was stored and asks on.
+  for (std::size_t known = 0; known < batches.size(); ++known) {
+    std::size_t asked = 0;
+    std::vector<engine::Trial> next;
+    const Evaluator replay = [&](std::span<const engine::Trial> trials) {
+      if (asked < known) return answers[asked++];
+      next.assign(trials.begin(), trials.end());
+      throw std::runtime_error("killed");
+    };
+    CHECK_THROWS_WITH(calibrate(study.calibration, replay), "killed");
+    CHECK(next == batches[known]);
+  }
 }

@@ -48,3 +48,17 @@ TEST_CASE("coordinates of a hypercube are uniform and uncorrelated", "[calibrato
   // Correlation of a random permutation has deviation 1 / sqrt(999); four of them.
   CHECK(std::abs(product * 12.0) < 4.0 / std::sqrt(999.0));
 }
+
+TEST_CASE("a design keeps the constraints, and without any is the plain one", "[calibrator]") {
+  Calibration c;
+  for (const char* name : {"toy.u0", "toy.u1", "toy.u2"}) {
+    c.free.push_back({repose::engine::make_key(name, {}), 0.0, 1.0, {}, {}});
+  }
+  CHECK(spread_design(SearchSpace(c), 10, 5) == spread_design(10, 3, 5));
+  c.constraints.push_back({{{c.free[0].key, 1.0}, {c.free[1].key, 1.0}}, 0.5, {}});  // an eighth
+  const auto points = spread_design(SearchSpace(c), 10, 5);
+  CHECK(points.size() == 10);
+  for (const UnitPoint& point : points) CHECK(point[0] + point[1] <= 0.5);
+  c.constraints.front().bound = -0.1;
+  CHECK(spread_design(SearchSpace(c), 10, 5).empty());
+}

@@ -120,3 +120,20 @@ TEST_CASE("failures are counted by kind, and the commonest is quoted", "[calibra
   CHECK(ledger.failed() == 1);
   CHECK(ledger.commonest_failure() == "toy: did_not_rest (the heap still creeps)");
 }
+
+TEST_CASE("of many known runs the closest to the targets are kept, in their order",
+          "[calibrator]") {
+  const toy::Study study = toy::two_of_three(0.3);
+  std::vector<KnownRun> known;
+  const double y0 = study.calibration.measurements[0].value;
+  const double y1 = study.calibration.measurements[1].value;
+  for (const double off : {3.0, 0.5, 2.0, 0.1, std::nan("")}) {
+    known.push_back({{}, Level::search, {y0 + off, y1}, off});
+  }
+  const auto closest = closest_runs(study.calibration, known, 3);
+  REQUIRE(closest.size() == 3);
+  CHECK(closest[0].grain_steps == 0.5);
+  CHECK(closest[1].grain_steps == 2.0);
+  CHECK(closest[2].grain_steps == 0.1);
+  CHECK(closest_runs(study.calibration, known, 9).size() == 5);
+}

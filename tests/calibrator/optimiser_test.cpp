@@ -99,3 +99,22 @@ TEST_CASE("a cube without dimensions has one point", "[calibrator]") {
   CHECK(found.at.empty());
   CHECK(found.value == 3.0);
 }
+
+TEST_CASE("where a relation cuts off the bottom of a bowl, the lowest point left is found",
+          "[calibrator]") {
+  // u0 + u1 <= 0.8 with the bottom at (0.6, 0.6): by Lagrange's multiplier of the weights 1 and 2,
+  // u0 = 0.6 - 0.4 * 2/3, u1 = 0.6 - 0.4 / 3.
+  Box box = unit_box(2);
+  box.excesses.emplace_back([](std::span<const double> x) { return x[0] + x[1] - 0.8; });
+  const std::vector<std::vector<double>> starts{{0.1, 0.1}};
+  const Minimum found = minimise(bowl({0.6, 0.6}), box, starts, 200, {.evaluations = 200});
+  CHECK(found.at[0] == Approx(0.6 - 0.4 * 2.0 / 3.0).margin(2e-3));
+  CHECK(found.at[1] == Approx(0.6 - 0.4 / 3.0).margin(2e-3));
+  CHECK(found.at[0] + found.at[1] <= 0.8);
+}
+
+TEST_CASE("where no point keeps the relations the minimum is infinite", "[calibrator]") {
+  Box box = unit_box(2);
+  box.excesses.emplace_back([](std::span<const double>) { return 1.0; });
+  CHECK(std::isinf(minimise_locally(bowl({0.6, 0.6}), box, {0.1, 0.1}).value));
+}

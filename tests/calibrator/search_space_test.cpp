@@ -64,3 +64,32 @@ TEST_CASE("a set holds the fixed, the free and the tied parameters", "[calibrato
   CHECK(set.get(wall_density).value() == 2456.0);
   CHECK(set.get(make_key("material.density", {MaterialId::grain})).value() == 1228.0);
 }
+
+TEST_CASE("a constraint is told of free, tied and fixed parameters alike", "[calibrator]") {
+  constexpr auto grain = MaterialId::grain;
+  Calibration c = two_parameters();
+  const auto wall = make_key("sliding_friction.coefficient", {grain, MaterialId::wall});
+  const auto rolling = make_key("rolling_resistance.coefficient", {grain, grain});
+  c.tied.push_back({wall, c.free[0].key, 0.5});
+  c.fixed.set(rolling, 0.2);
+  // 2 friction - 2 friction of the wall + rolling <= 0.7, that is friction <= 0.5: u0 <= 0.5.
+  c.constraints.push_back({{{c.free[0].key, 2.0}, {wall, -2.0}, {rolling, 1.0}}, 0.7, {}});
+  const SearchSpace space(c);
+  CHECK(space.allows(std::vector{0.499, 0.1}));
+  CHECK_FALSE(space.allows(std::vector{0.501, 0.1}));
+  const auto box = space.box();
+  REQUIRE(box.excesses.size() == 1);
+  // Over its range, 0.8 in the sum of friction's weight 1.
+  CHECK(box.excesses[0](std::vector{1.0, 0.0}) == Approx(0.5));
+}
+
+TEST_CASE("a prior's misfit is counted in its deviations, in the parameter's value",
+          "[calibrator]") {
+  Calibration c = two_parameters();
+  c.free[0].prior = calibrator::Prior{0.5, 0.1};
+  const SearchSpace space(c);
+  CHECK(space.prior_misfit(std::vector{0.5, 0.3}) == Approx(0.0).margin(1e-12));
+  CHECK(space.prior_misfit(std::vector{0.75, 0.9}) == Approx(4.0));
+  CHECK(space.log_prior(std::vector{0.5, 0.9}) - space.log_prior(std::vector{0.75, 0.1}) ==
+        Approx(2.0));
+}

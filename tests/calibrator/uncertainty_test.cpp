@@ -75,3 +75,41 @@ TEST_CASE("a noisier simulation widens the intervals", "[calibrator]") {
   };
   CHECK(width(2.0) > 1.2 * width(0.05));
 }
+
+TEST_CASE("a learnt direction is the product of powers that the data fix, and as well as they do",
+          "[calibrator]") {
+  // Both parameters from 1 to 100 by their logarithms; measured is log(x0 sqrt(x1)) to 0.05.
+  toy::Study study;
+  study.response = [](std::span<const double> u) {
+    return std::vector<double>{std::log(100.0) * (u[0] + 0.5 * u[1])};
+  };
+  study.sigma = {0.05};
+  study.truth = {0.4, 0.6};
+  study.noise = 0.01;
+  study = toy::ask(std::move(study), 1, 60, 4);
+  for (auto& free : study.calibration.free) {
+    free.lower = 1.0;
+    free.upper = 100.0;
+    free.scale = Scale::log;
+  }
+  const toy::Known known(std::move(study), 20);
+  const Learnt learnt = learnt_directions(known.outlook(), recommend(known.outlook(), {}));
+  REQUIRE(learnt.directions[0].learnt);
+  CHECK(learnt.directions[0].powers[0] == Approx(1.0));
+  CHECK(learnt.directions[0].powers[1] == Approx(0.5).margin(0.01));
+  CHECK(learnt.directions[0].product_error == Approx(0.05).margin(0.003));
+  CHECK_FALSE(learnt.directions[1].learnt);
+}
+
+TEST_CASE("what a prior tells is not counted as learnt from the data", "[calibrator]") {
+  toy::Study study = toy::two_of_three(0.02);
+  study.calibration.free[0].prior = Prior{0.4, 0.02};  // the data know it to 0.05
+  const toy::Known known(std::move(study), 20);
+  const UnitPoint best = recommend(known.outlook(), {});
+  const Learnt learnt = learnt_directions(known.outlook(), best);
+  // Precisions 1/0.02^2 of the prior and 1/0.05^2 of the data.
+  CHECK(learnt.share[0] == Approx(400.0 / (400.0 + 2500.0 + 12.0)).margin(0.02));
+  const auto intervals = profile_intervals(known.outlook(), best);
+  CHECK(intervals[0].upper - intervals[0].lower ==
+        Approx(2 * 1.96 / std::sqrt(2900.0)).margin(0.01));
+}

@@ -51,7 +51,12 @@ Fit fit() {
   result.best.set(question.tied[0].key, 0.55);
   result.parameters = {{question.free[0].key, 0.55, 0.5, 0.6, false, false, 0.97, true},
                        {question.free[1].key, 2.5e6, 1e6, 1e7, true, true, 0.1, false}};
-  result.directions = {{{0.8, -0.6}, 0.1, true}, {{0.6, 0.8}, 0.98, false}};
+  result.directions = {{{0.8, -0.6}, 0.1, true, {1.0, -0.25}, 0.06}, {{0.6, 0.8}, 0.98, false}};
+  result.posterior = {
+      {{0.5512345, 2.5e6}, {0.56, 3.5e6}}, {{0.5, 0.55, 0.6}, {1.2e6, 3e6, 9e6}}, 1.004, 1234};
+  result.next = {
+      {{"tilting_box", {}, {}}, "onset_angle", false, 0.4, 0.02, 0.7, 1, 0.65},
+      {question.measurements[1].experiment, "restitution", true, 0.57, 0.01, 0.3, 0, 0.98}};
   result.predictions = {
       {0, 30.5 * degree, 0.2 * degree, 4, 0.4 * degree, 30.6 * degree, 0.3 * degree, -0.49},
       {1, 0.57, 0.001, 4, 0.002, 0.571, 0.003, -1.5}};
@@ -86,6 +91,15 @@ TEST_CASE("a fit is printed in the units of the study", "[server]") {
   CHECK(json["history"][0]["misfit"].is_null());
   CHECK(json["history"][0]["observed"][1].is_null());
   CHECK(json["offset"][0]["value"] == Approx(0.5));
+  CHECK(json["directions"][0]["components"][1]["power"] == -0.25);
+  CHECK(json["directions"][0]["product_error"] == 0.06);
+  CHECK(!json["directions"][1].contains("product_error"));
+  CHECK(to_text(json["posterior"]["samples"][0]) == "[55.123,2.5]");
+  CHECK(json["posterior"]["quantiles"][1][2] == Approx(9));
+  CHECK(json["next_measurements"][0]["unit"] == "deg");
+  CHECK(json["next_measurements"][0]["parameter"]["field"] == "material.shear_modulus");
+  CHECK(to_text(json["next_measurements"][1]["settings"]) ==
+        R"({"height":{"value":300.0,"unit":"mm"}})");
   CHECK(json["stop"] == "hit");
   CHECK(json["seed"] == 1);
   CHECK(json["engine_version"].is_string());
@@ -102,6 +116,25 @@ TEST_CASE("a fit reads back to the last digit or two", "[server]") {
   CHECK(again->history[0].parameters.get(calibration().tied[0].key) == Approx(0.55));
   CHECK(std::isnan(again->history[0].values[1]));
   CHECK(again->stop == calibrator::StopReason::hit);
+  CHECK(again->posterior.samples[1] == fit().posterior.samples[1]);
+  CHECK(again->next[1].experiment.settings == fit().next[1].experiment.settings);
+  CHECK(again->next[1].parameter == 0);
+  CHECK(again->directions[0].powers == fit().directions[0].powers);
+}
+
+TEST_CASE("a fit of a program that drew no samples is read too", "[server]") {
+  Json json = Json::parse(print_fit(calibration(), fit()));
+  json.erase("posterior");
+  json.erase("next_measurements");
+  for (Json& direction : json["directions"]) {
+    direction.erase("product_error");
+    for (Json& component : direction["components"]) component.erase("power");
+  }
+  const auto read = parse_fit(calibration(), to_text(json));
+  if (!read) FAIL(read.error());
+  CHECK(read->posterior.samples.empty());
+  CHECK(read->next.empty());
+  CHECK(read->directions[0].powers.empty());
 }
 
 TEST_CASE("a fit without a single prediction can be printed and read", "[server]") {

@@ -218,3 +218,57 @@ TEST_CASE("numbers are printed with the digits they carry", "[server]") {
   CHECK(server::count_text(1234567) == "1 234 567");
   CHECK(server::duration_text(200.0) == "3 min 20 s");
 }
+
+namespace {
+
+/// The sample with a curve of two points, samples of the posterior and something to measure next.
+server::CalibrationDocument with_curve() {
+  auto document = sample();
+  for (const double speed : {1.0, 2.0}) {
+    Measurement point = measured("drum", "dynamic_angle", 0.5 + 0.02 * speed, 0.01);
+    point.experiment.settings["speed"] = speed;
+    point.unit = engine::unit::degree;
+    point.curve = 1;
+    point.allowance = 0.0174533;
+    calibrator::Prediction prediction;
+    prediction.measurement = document.calibration->measurements.size();
+    prediction.predicted = point.value + 0.01;
+    prediction.standard_error = 0.002;
+    prediction.z = speed == 1.0 ? 3.0 : 4.0;
+    document.calibration->measurements.push_back(point);
+    document.fit->predictions.push_back(prediction);
+  }
+  document.fit->directions[0].powers = {1.0, 0.4};
+  document.fit->directions[0].product_error = 0.062;
+  document.fit->posterior.samples = {{0.4, 0.02}, {0.5, 0.1}};
+  document.fit->posterior.quantiles = {{0.41, 0.45, 0.51}, {0.006, 0.05, 0.2}};
+  document.fit->next = {{{"tilting_box", {}, {}}, "onset_angle", false, 0.4, 0.0175, 0.7, 1, 0.65}};
+  return document;
+}
+
+}  // namespace
+
+TEST_CASE("a curve is one line of the table and one chart, its allowance in the warning's colour",
+          "[server]") {
+  const std::string html = report(with_curve());
+  CHECK(count(html, "<tr><td>drum: dynamic angle, 2 points along speed") == 1);
+  CHECK_THAT(html, Contains("3.54 rms"));  // of z = 3 and 4
+  CHECK_THAT(html, Contains("<small class=\"warning\">allowance 1 deg"));
+  CHECK(count(html, ">drum: dynamic angle, 2 points along speed</text>") == 1);
+  CHECK_THAT(server::print_summary(with_curve()), Contains("2 points along speed"));
+}
+
+TEST_CASE("what was learnt is told as a product, with what to measure next", "[server]") {
+  const auto document = with_curve();
+  const std::string text = server::print_summary(document);
+  CHECK_THAT(text,
+             Contains("the data fix sliding friction (grain-grain) × rolling resistance "
+                      "(grain-grain)^0.4 to 6.2 %."));
+  CHECK_THAT(text,
+             Contains("tilting box: onset angle, to ± 1 deg: most about rolling resistance "
+                      "(grain-grain), learnt to 65 % instead of 30 %."));
+  const std::string html = report(document);
+  CHECK_THAT(html, Contains("What to measure next"));
+  CHECK(count(html, "class=\"speck\"") == 2);
+  CHECK_THAT(html, Contains("0.006 to 0.2"));  // 90 % of the posterior
+}

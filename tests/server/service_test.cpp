@@ -151,3 +151,39 @@ TEST_CASE("what is stored can be read while a service runs", "[server]") {
   CHECK(reader.evaluations(id, 3, std::nullopt)->find("\"next\":2") != std::string::npos);
   CHECK_THROWS_AS(Service(in(folder)), db::Error);
 }
+
+TEST_CASE("a warm start takes over what the store had, and a replay of it the same", "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  int cold = 0, run = 0, stored = 0;
+  calibrate(service, cold, stored);
+  auto study = repose::server::Json::parse(drop_study());
+  study["budget"]["warm_start"] = true;
+  study["measurements"][0]["value"] = study["measurements"][0]["value"].get<double>() + 0.03;
+  CalibrationEvents events;
+  events.trial = [&](std::size_t, std::size_t, bool was_stored) { run += was_stored ? 0 : 1; };
+  const auto warm = read(service.calibrate(study.dump(), {}, events));
+  CHECK(warm.state == "done");
+  CHECK(run < cold);
+  CHECK(warm.fit->history.front().stage != "start");
+}
+
+TEST_CASE("a free parameter that no measurement feels is named before the search", "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  auto study = repose::server::Json::parse(drop_study());
+  // A grain that falls straight on a plate does not slide.
+  study["free"].push_back({{"field", "sliding_friction.coefficient"},
+                           {"between", {"grain", "wall"}},
+                           {"lower", 0.1},
+                           {"upper", 0.9},
+                           {"unit", "1"}});
+  int run = 0;
+  CalibrationEvents events;
+  events.trial = [&](std::size_t, std::size_t, bool) { ++run; };
+  const auto document = read(service.calibrate(study.dump(), {}, events));
+  CHECK(document.state == "failed");
+  CHECK(document.error.find("no measurement feels sliding_friction.coefficient:grain-wall") !=
+        std::string::npos);
+  CHECK(run == 0);  // nothing of the search
+}

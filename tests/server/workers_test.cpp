@@ -89,13 +89,15 @@ TEST_CASE("the answer of a process is that of this process, bit for bit", "[serv
 TEST_CASE("a process that dies, rambles or hangs costs its own evaluation only", "[server]") {
   const TemporaryFolder folder;
   db::Store store(folder / "a.db", db::Access::write);
-  const std::vector trials{drop(0.1)};
+  std::vector<engine::Trial> trials;
   const auto run = [&](const std::string& body, double limit) {
+    trials = {drop(0.1, 1 + trials.front().seed)};  // each a question of its own
     return failure(
         Workers(store, {.workers = 1, .program = script(folder, body), .time_limit = limit})
             .run(trials, {}, {})
             .at(0));
   };
+  trials = {drop(0.1)};
   CHECK(run("kill -SEGV $$", 10) == engine::FailureKind::crashed);
   CHECK(run("echo hello", 10) == engine::FailureKind::crashed);
   CHECK(run("exit 3", 10) == engine::FailureKind::crashed);
@@ -104,6 +106,50 @@ TEST_CASE("a process that dies, rambles or hangs costs its own evaluation only",
   CHECK(run("exec >&-; exec sleep 1000", 0.2) == engine::FailureKind::timed_out);
   CHECK(run("exec yes", 10) == engine::FailureKind::crashed);
   CHECK_FALSE(store.evaluation(evaluation_key(trials[0])).has_value());  // none is an answer
+}
+
+TEST_CASE("a trial that crashed or ran past the limit is not asked again, but with another limit",
+          "[server]") {
+  const TemporaryFolder folder;
+  db::Store store(folder / "a.db", db::Access::write);
+  const auto asked = folder / "asked";  // a line for every process
+  const auto run = [&](std::uint64_t seed, const std::string& body, double limit) {
+    const auto program = script(folder, "echo >> " + asked.string() + "; " + body);
+    return failure(Workers(store, {.workers = 1, .program = program, .time_limit = limit})
+                       .run(std::vector{drop(0.1, seed)}, {}, {})
+                       .at(0));
+  };
+  const auto processes = [&] { return std::filesystem::file_size(asked); };
+  CHECK(run(1, "exit 3", 10) == engine::FailureKind::crashed);
+  CHECK(processes() == 2);  // twice, before it is believed
+  CHECK(run(1, "exit 3", 10) == engine::FailureKind::crashed);
+  CHECK(processes() == 2);
+  CHECK(run(2, "exec sleep 1000", 0.1) == engine::FailureKind::timed_out);
+  CHECK(processes() == 3);
+  CHECK(run(2, "exec sleep 1000", 0.1) == engine::FailureKind::timed_out);
+  CHECK(processes() == 3);
+  CHECK(run(2, "exec sleep 1000", 0.2) == engine::FailureKind::timed_out);
+  CHECK(processes() == 4);
+}
+
+TEST_CASE("time spent is the store's word, so that a replay is told the same", "[server]") {
+  const TemporaryFolder folder;
+  db::Store store(folder / "a.db", db::Access::write);
+  const std::vector first{drop(0.1), drop(0.2)};
+  const std::vector second{drop(0.3)};
+  Workers made(store, {.workers = 2});
+  made.run(first, {}, {});
+  const double begun = made.spent().core_seconds;
+  made.run(second, {}, {});
+  CHECK(begun > 0.0);
+  CHECK(made.spent().core_seconds > begun);
+  CHECK(made.spent().wall_seconds > 0.0);
+  CHECK(made.spent().wall_seconds <= made.spent().core_seconds + 1e-5);  // clocks are read apart
+  Workers replayed(store, {.workers = 1});
+  replayed.run(first, {}, {});
+  replayed.run(second, {}, {});
+  CHECK(replayed.spent().core_seconds == made.spent().core_seconds);
+  CHECK(replayed.spent().wall_seconds == made.spent().wall_seconds);
 }
 
 TEST_CASE("a process that dies once is asked once more", "[server]") {
