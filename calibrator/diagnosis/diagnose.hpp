@@ -23,8 +23,8 @@
 #include <Eigen/Core>
 
 #include "calibrator/calibration.hpp"
+#include "calibrator/diagnosis/deciding_measurement.hpp"
 #include "calibrator/diagnosis/diagnosis.hpp"
-#include "calibrator/diagnosis/next_measurement.hpp"
 #include "calibrator/diagnosis/tolerance.hpp"
 #include "calibrator/evaluator.hpp"
 #include "calibrator/fit.hpp"

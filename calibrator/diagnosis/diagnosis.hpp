@@ -95,7 +95,7 @@ struct Excuse {
 };
 
 /// A measurement that would tell rival explanations apart.
-struct NextMeasurement {
+struct DecidingMeasurement {
   engine::Experiment experiment;
   std::string observable;
   engine::Unit unit;
@@ -124,7 +124,7 @@ struct Diagnosis {
   std::vector<std::vector<std::size_t>> families;  ///< effects with the same trace
   std::vector<std::vector<std::size_t>> rivals;  ///< explanations that are open, by their effects;
                                                  ///< none: the calibrated model
-  std::vector<NextMeasurement> next;             ///< what would settle it, best first
+  std::vector<DecidingMeasurement> next;         ///< what would settle it, best first
   int evaluations = 0;                           ///< spent by the diagnosis
   std::vector<std::string> remarks;
 };

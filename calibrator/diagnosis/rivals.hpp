@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "calibrator/diagnosis/deciding_measurement.hpp"
 #include "calibrator/diagnosis/diagnose.hpp"
 #include "calibrator/diagnosis/models.hpp"
-#include "calibrator/diagnosis/next_measurement.hpp"
 
 namespace repose::calibrator {
 

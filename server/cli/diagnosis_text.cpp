@@ -123,7 +123,7 @@ std::string next_table(const Diagnosis& diagnosis) {
   }
   head.insert(head.end(), {"+-", "evidence"});
   TextTable table(head);
-  for (const calibrator::NextMeasurement& next : diagnosis.next) {
+  for (const calibrator::DecidingMeasurement& next : diagnosis.next) {
     Measurement measurement;
     measurement.experiment = next.experiment;
     measurement.observable = next.observable;

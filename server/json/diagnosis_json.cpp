@@ -11,7 +11,7 @@
 #include "engine/evaluate.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/key_json.hpp"
-#include "server/json/next_measurement_json.hpp"
+#include "server/json/deciding_measurement_json.hpp"
 #include "server/json/parameters_json.hpp"
 #include "server/json/read_key.hpp"
 

@@ -1,4 +1,4 @@
-#include "calibrator/diagnosis/next_measurement.hpp"
+#include "calibrator/diagnosis/deciding_measurement.hpp"
 
 #include <algorithm>
 #include <set>

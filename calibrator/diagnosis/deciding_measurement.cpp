@@ -1,4 +1,4 @@
-#include "calibrator/diagnosis/next_measurement.hpp"
+#include "calibrator/diagnosis/deciding_measurement.hpp"
 
 #include <algorithm>
 #include <array>
@@ -109,12 +109,12 @@ std::optional<Forecast> forecast_of(const Values& values, std::size_t candidate)
   return Forecast{mean, squares / (count - 1) * (1.0 + 1.0 / count)};
 }
 
-NextMeasurement weigh(const Candidate& candidate,
-                      const std::vector<Forecast>& forecasts,
-                      std::span<const Rival> rivals) {
-  NextMeasurement next{.experiment = candidate.measurement.experiment,
-                       .observable = candidate.measurement.observable,
-                       .unit = candidate.measurement.unit};
+DecidingMeasurement weigh(const Candidate& candidate,
+                          const std::vector<Forecast>& forecasts,
+                          std::span<const Rival> rivals) {
+  DecidingMeasurement next{.experiment = candidate.measurement.experiment,
+                           .observable = candidate.measurement.observable,
+                           .unit = candidate.measurement.unit};
   Measurement expected = candidate.measurement;
   for (const Forecast& forecast : forecasts) {
     next.predicted.push_back(forecast.mean);
@@ -177,22 +177,22 @@ std::vector<Candidate> candidates_of(const Calibration& calibration, const Toler
   return candidates;
 }
 
-std::vector<NextMeasurement> weigh_candidates(const Calibration& calibration,
-                                              std::span<const Candidate> candidates,
-                                              std::span<const Rival> rivals,
-                                              const Evaluator& evaluator) {
+std::vector<DecidingMeasurement> weigh_candidates(const Calibration& calibration,
+                                                  std::span<const Candidate> candidates,
+                                                  std::span<const Rival> rivals,
+                                                  const Evaluator& evaluator) {
   const std::vector<Values> values = simulate(calibration, candidates, rivals, evaluator);
-  std::vector<NextMeasurement> result;
+  std::vector<DecidingMeasurement> result;
   for (std::size_t q = 0; q < candidates.size(); ++q) {
     std::vector<Forecast> forecasts;
     for (const Values& own : values) {
       if (const auto forecast = forecast_of(own, q)) forecasts.push_back(*forecast);
     }
     if (forecasts.size() < rivals.size()) continue;
-    NextMeasurement next = weigh(candidates[q], forecasts, rivals);
+    DecidingMeasurement next = weigh(candidates[q], forecasts, rivals);
     if (next.evidence >= worth_while) result.push_back(std::move(next));
   }
-  std::ranges::stable_sort(result, std::greater<>(), &NextMeasurement::gain);
+  std::ranges::stable_sort(result, std::greater<>(), &DecidingMeasurement::gain);
   return result;
 }
 

@@ -1,4 +1,4 @@
-#include "server/json/next_measurement_json.hpp"
+#include "server/json/deciding_measurement_json.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -12,8 +12,8 @@
 namespace repose::server {
 namespace {
 
+using calibrator::DecidingMeasurement;
 using calibrator::Diagnosis;
-using calibrator::NextMeasurement;
 
 std::vector<std::size_t> read_model(const Json& names, const Diagnosis& diagnosis) {
   std::vector<std::size_t> effects;
@@ -29,7 +29,7 @@ std::vector<std::size_t> read_model(const Json& names, const Diagnosis& diagnosi
 
 }  // namespace
 
-Json print_next(const Diagnosis& diagnosis, const NextMeasurement& next) {
+Json print_next(const Diagnosis& diagnosis, const DecidingMeasurement& next) {
   Json expected = Json::array();
   for (std::size_t i = 0; i < next.predicted.size(); ++i) {
     Json model = Json::array();
@@ -51,7 +51,7 @@ Json print_next(const Diagnosis& diagnosis, const NextMeasurement& next) {
 
 void read_next(const Json& json, Diagnosis& diagnosis) {
   for (const Json& entry : json) {
-    NextMeasurement next;
+    DecidingMeasurement next;
     next.experiment.name = entry.at("experiment").get<std::string>();
     for (const auto& [name, setting] : entry.at("settings").items()) {
       const auto unit = engine::unit::find(setting.at("unit").get<std::string>());

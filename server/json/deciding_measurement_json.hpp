@@ -8,7 +8,8 @@ namespace repose::server {
 
 /// {"experiment","settings","observable","unit","standard_error","evidence","gain",
 ///  "expected":[{"model":[EFFECT...],"value"}...]}
-Json print_next(const calibrator::Diagnosis& diagnosis, const calibrator::NextMeasurement& next);
+Json print_next(const calibrator::Diagnosis& diagnosis,
+                const calibrator::DecidingMeasurement& next);
 
 /// The effects of the diagnosis are read before; its rivals are read with the first measurement.
 void read_next(const Json& json, calibrator::Diagnosis& diagnosis);

@@ -42,9 +42,9 @@ std::vector<Candidate> candidates_of(const Calibration& calibration, const Toler
 
 /// The candidates in the order of what they would settle, best first; those that would settle
 /// nothing are left out.
-std::vector<NextMeasurement> weigh_candidates(const Calibration& calibration,
-                                              std::span<const Candidate> candidates,
-                                              std::span<const Rival> rivals,
-                                              const Evaluator& evaluator);
+std::vector<DecidingMeasurement> weigh_candidates(const Calibration& calibration,
+                                                  std::span<const Candidate> candidates,
+                                                  std::span<const Rival> rivals,
+                                                  const Evaluator& evaluator);
 
 }  // namespace repose::calibrator
