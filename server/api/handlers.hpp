@@ -25,6 +25,8 @@ Reply get_openapi(Service& service, const Request& request);
 
 Reply list_materials(Service& service, const Request& request);
 Reply get_material(Service& service, const Request& request);
+Reply put_material(Service& service, const Request& request);
+Reply remove_material(Service& service, const Request& request);
 
 Reply get_health(Service& service, const Request& request);
 Reply get_readiness(Service& service, const Request& request);
