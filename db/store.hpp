@@ -119,6 +119,7 @@ class Store {
 
  private:
   friend class EventStore;        // db/event_store.hpp
+  friend class MaterialStore;     // db/material_store.hpp
   friend class MeasurementStore;  // db/measurement_store.hpp
   friend class ReplyStore;        // db/reply_store.hpp
   friend struct Inspection;       // db/figures.cpp

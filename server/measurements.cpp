@@ -2,8 +2,11 @@
 
 #include <utility>
 
+#include "db/material_store.hpp"
 #include "server/jobs/clock.hpp"
 #include "server/json/measurement_set_json.hpp"
+#include "server/json/own_material_json.hpp"
+#include "server/own_materials.hpp"
 
 namespace repose::server {
 
@@ -22,12 +25,11 @@ Refusal no_such_set(const std::string& name, const std::optional<std::int64_t>& 
           {}};
 }
 
-/// A name that stands in an address as it is.
-bool is_name(std::string_view text) {
-  constexpr std::string_view letters =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
-  constexpr std::size_t longest = 64;
-  return !text.empty() && text.size() <= longest && text.find_first_not_of(letters) == text.npos;
+/// The grain of a material of users stands in for one that the study leaves out.
+void take_grain(db::Store& store, ResolvedSubmission& submission) {
+  if (!submission.source.material) return;
+  const auto own = db::MaterialStore(store).find(*submission.source.material);
+  if (own) submission.study = with_grain(submission.study, own->document);
 }
 
 }  // namespace
@@ -36,13 +38,7 @@ Answer<std::string> put_measurement_set(db::Store& store,
                                         const std::string& name,
                                         std::string_view content,
                                         const std::optional<std::string>& table_of) {
-  if (!is_name(name)) {
-    return Unexpected{invalid("a set cannot have that name",
-                              {{"name",
-                                "a name stands in addresses",
-                                "\"" + name.substr(0, 64) + "\"",
-                                "1 to 64 letters, digits, dots, underscores and hyphens"}})};
-  }
+  if (!is_name(name)) return Unexpected{no_name(name)};
   auto set =
       table_of ? parse_measurement_table(content, *table_of) : parse_measurement_set(content);
   if (!set) return Unexpected{invalid("the measurements have problems", set.error())};
@@ -63,7 +59,10 @@ Answer<ResolvedSubmission> resolve_submission(db::Store& store, std::string_view
   auto submission = parse_submission(text);
   if (!submission) return Unexpected{invalid("the submission has problems", submission.error())};
   ResolvedSubmission result{submission->study, {submission->material, std::nullopt}};
-  if (!submission->set) return result;
+  if (!submission->set) {
+    take_grain(store, result);
+    return result;
+  }
   const auto set = db::MeasurementStore(store).find(*submission->set, submission->version);
   if (!set) {
     return Unexpected{invalid("the submission has problems",
@@ -75,6 +74,7 @@ Answer<ResolvedSubmission> resolve_submission(db::Store& store, std::string_view
   result.study = with_measurements(submission->study, set->measurements);
   result.source.set = set->id;
   if (!result.source.material) result.source.material = set->material;
+  take_grain(store, result);
   return result;
 }
 

@@ -9,6 +9,7 @@
 
 #include "calibrator/probe.hpp"
 #include "db/event_store.hpp"
+#include "db/material_store.hpp"
 #include "db/store.hpp"
 #include "engine/evaluate.hpp"
 #include "server/access/secret.hpp"
@@ -23,12 +24,14 @@
 #include "server/json/job_json.hpp"
 #include "server/json/measurement_set_json.hpp"
 #include "server/json/missing_effect_request.hpp"
+#include "server/json/own_material_json.hpp"
 #include "server/lineage.hpp"
 #include "server/measurements.hpp"
 #include "server/missing_effect.hpp"
 #include "server/nightly/continuation.hpp"
 #include "server/nightly/night_watch.hpp"
 #include "server/nightly/nights.hpp"
+#include "server/own_materials.hpp"
 #include "server/schedules.hpp"
 
 namespace repose::server {
@@ -485,6 +488,24 @@ std::vector<engine::Evaluation> Service::evaluate(const engine::Trial& trial, in
   for (std::size_t i = 0; i < trials.size(); ++i) trials[i].seed = trial.seed + i;
   Workers workers(state_->store, state_->worker_options);
   return workers.run(trials, {}, {});
+}
+
+std::string Service::materials() const {
+  return print_all_materials(db::MaterialStore(state_->store).list());
+}
+
+Answer<std::string> Service::material(const std::string& name) const {
+  return server::material(state_->store, name);
+}
+
+Answer<std::string> Service::put_material(const std::string& name,
+                                          std::string_view content,
+                                          bool may_replace) {
+  return server::put_material(state_->store, name, content, may_replace);
+}
+
+Answer<std::string> Service::remove_material(const std::string& name) {
+  return server::remove_material(state_->store, name);
 }
 
 Answer<std::string> Service::put_measurement_set(const std::string& name,

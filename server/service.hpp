@@ -25,7 +25,8 @@ namespace repose::server {
 
 /// Why a request was not carried out.
 struct Refusal {
-  enum class Kind { invalid, not_found, wrong_state };
+  /// unconditional: it would replace something that the request does not name
+  enum class Kind { invalid, not_found, wrong_state, unconditional };
   Kind kind = Kind::invalid;
   std::string message;
   Problems problems;  ///< of an invalid request: all of them
@@ -122,6 +123,14 @@ class Service {
   Answer<std::string> extend(std::int64_t id, std::string_view request);
   /// {"asked","items":[...]}: the calibrations that come from the same one, parents first.
   [[nodiscard]] Answer<std::string> lineage(std::int64_t id) const;
+
+  // Materials, published and of users: see server/own_materials.hpp.
+  [[nodiscard]] std::string materials() const;
+  [[nodiscard]] Answer<std::string> material(const std::string& name) const;
+  Answer<std::string> put_material(const std::string& name,
+                                   std::string_view content,
+                                   bool may_replace);
+  Answer<std::string> remove_material(const std::string& name);
 
   // Measurements that users keep, and the fits of a material: see server/measurements.hpp.
   Answer<std::string> put_measurement_set(const std::string& name,

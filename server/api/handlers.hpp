@@ -33,6 +33,8 @@ Reply get_openapi(Service& service, const Request& request);
 
 Reply list_materials(Service& service, const Request& request);
 Reply get_material(Service& service, const Request& request);
+Reply put_material(Service& service, const Request& request);
+Reply remove_material(Service& service, const Request& request);
 
 Reply add_schedule(Service& service, const Request& request);
 Reply list_schedules(Service& service, const Request& request);

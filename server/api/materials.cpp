@@ -1,18 +1,34 @@
 #include "server/api/handlers.hpp"
 #include "server/api/problem.hpp"
-#include "server/json/material_library.hpp"
+#include "server/service.hpp"
 
 namespace repose::server::handlers {
 
-Reply list_materials(Service& /*service*/, const Request& /*request*/) {
-  return {.status = 200, .body = print_material_list()};
+namespace {
+
+Reply reply_of(const Answer<std::string>& answer) {
+  if (!answer) return problem_reply(answer.error());
+  return {.status = 200, .body = *answer};
 }
 
-Reply get_material(Service& /*service*/, const Request& request) {
-  if (find_material(request.name) == nullptr) {
-    return problem_reply(404, no_such_material(request.name));
-  }
-  return {.status = 200, .body = print_material(request.name)};
+}  // namespace
+
+Reply list_materials(Service& service, const Request& /*request*/) {
+  return {.status = 200, .body = service.materials()};
+}
+
+Reply get_material(Service& service, const Request& request) {
+  return reply_of(service.material(request.name));
+}
+
+Reply put_material(Service& service, const Request& request) {
+  // That it is the one that the client knows has been looked at before this is called.
+  const bool names_it = !request.field("if-match").empty();
+  return reply_of(service.put_material(request.name, request.body, names_it));
+}
+
+Reply remove_material(Service& service, const Request& request) {
+  return reply_of(service.remove_material(request.name));
 }
 
 }  // namespace repose::server::handlers

@@ -49,6 +49,8 @@ int status_of(Refusal::Kind kind) {
       return 404;
     case Refusal::Kind::wrong_state:
       return 409;
+    case Refusal::Kind::unconditional:
+      return 428;
   }
   return 500;
 }

@@ -10,7 +10,9 @@ std::string print_head(const Reply& reply) {
                      (reply.status < 300 ? " OK\r\n" : " Refused\r\n");
   text += "Content-Type: " + reply.content_type + "\r\n";
   text += "X-Content-Type-Options: nosniff\r\nCache-Control: no-store\r\n";
-  for (const auto& [name, value] : reply.headers) text += name + ": " + value + "\r\n";
+  for (const auto& [name, value] : reply.headers) {
+    text.append(name).append(": ").append(value).append("\r\n");
+  }
   return text;
 }
 

@@ -47,7 +47,7 @@ constexpr std::string_view json = "application/json", stream = "text/event-strea
                            table_form = "text/csv";
 
 // clang-format off
-constexpr std::array<Route, 36> table{{
+constexpr std::array<Route, 38> table{{
     {"POST", "/v1/calibrations", "submitCalibration", "Queue a calibration.",
      "submission", 202, "calibration_document", {}, handlers::submit_calibration},
     {"GET", "/v1/calibrations", "listCalibrations", "List calibrations, newest first.",
@@ -90,10 +90,14 @@ constexpr std::array<Route, 36> table{{
      "", 200, "best_fit_list", best_fit_fields, handlers::list_best_fits},
     {"GET", "/v1/catalogue", "getCatalogue", "Get effects, experiments, material properties and units.",
      "", 200, "catalogue", {}, handlers::get_catalogue},
-    {"GET", "/v1/materials", "listMaterials", "List the grains of which published properties are known.",
+    {"GET", "/v1/materials", "listMaterials", "List the grains that are described: published ones, and those of users.",
      "", 200, "material_list", {}, handlers::list_materials},
-    {"GET", "/v1/materials/{name}", "getMaterial", "Get the published properties of a grain, with their sources.",
-     "", 200, "published_material", {}, handlers::get_material},
+    {"GET", "/v1/materials/{name}", "getMaterial", "Get the properties of a grain: published, with their sources, or a user's.",
+     "", 200, "material", {}, handlers::get_material},
+    {"PUT", "/v1/materials/{name}", "putMaterial", "Describe a grain of your own.",
+     "material_content", 200, "material", {}, handlers::put_material},
+    {"DELETE", "/v1/materials/{name}", "removeMaterial", "Remove a grain of your own.",
+     "", 200, "material", {}, handlers::remove_material},
     {"POST", "/v1/schedules", "addSchedule", "Have a study calibrated again at its times.",
      "schedule", 201, "schedule_document", {}, handlers::add_schedule},
     {"GET", "/v1/schedules", "listSchedules", "List the schedules.",

@@ -175,3 +175,55 @@ TEST_CASE("a submission that names no set that is kept is refused", "[end_to_end
   named["material"] = "glass";
   CHECK(api.post(named.dump()).status == 202);
 }
+
+TEST_CASE("a grain of one's own is kept, replaced knowingly, and removed", "[end_to_end]") {
+  const TemporaryFolder folder;
+  Api api(folder);
+  const std::string path = "/v1/materials/our-beads";
+  const auto put = [&](const char* title, const httplib::Headers& fields = {}) {
+    const Json study = Json::parse(example("drop-minimal.json"));
+    const Json document{{"title", title}, {"grain", study["materials"]["grain"]}};
+    return api.put(path, document.dump(), "application/json", fields);
+  };
+  CHECK(api.get(path).status == 404);
+  CHECK(put("beads").status == 200);
+  CHECK(put("beads").status == 200);  // the same again changes nothing
+  CHECK(put("glass beads").status == 428);
+  const std::string tag = api.get(path).get_header_value("ETag");
+  CHECK(put("glass beads", {{"If-Match", tag}}).status == 200);
+  CHECK(put("steel beads", {{"If-Match", tag}}).status == 412);
+  CHECK(Json::parse(api.get(path).body)["title"] == "glass beads");
+  const Json list = Json::parse(api.get("/v1/materials").body);
+  CHECK(list["items"].front()["origin"] == "published");
+  CHECK(list["items"].back()["origin"] == "own");
+  CHECK(list["items"].back()["name"] == "our-beads");
+  CHECK(
+      api.put("/v1/materials/soybean", R"({"title":"x","grain":{}})", "application/json").status ==
+      409);
+  CHECK(api.remove("/v1/materials/soybean").status == 409);
+  const httplib::Response bad =
+      api.put("/v1/materials/odd",
+              R"({"title":7,"grain":{"density":{"value":-1,"unit":"s"},"x":1}})",
+              "application/json");
+  REQUIRE(bad.status == 422);
+  CHECK(Json::parse(bad.body)["errors"].size() == 3);
+  CHECK(api.remove(path).status == 200);
+  CHECK(api.remove(path).status == 404);
+}
+
+TEST_CASE("a study of one's own material may leave its grain out", "[end_to_end]") {
+  const TemporaryFolder folder;
+  Api api(folder);
+  Json study = Json::parse(example("drop-minimal.json"));
+  const Json grain = study["materials"]["grain"];
+  study["materials"].erase("grain");
+  study["material"] = "our-beads";
+  CHECK(api.post(study.dump()).status == 422);  // nobody has described them yet
+  api.put("/v1/materials/our-beads",
+          Json{{"title", "beads"}, {"grain", grain}}.dump(),
+          "application/json");
+  const Json document = api.wait(api.submit(study.dump()), ends);
+  CHECK(document["state"] == "done");
+  CHECK(document["study"]["materials"]["grain"]["density"]["value"] == grain["density"]["value"]);
+  CHECK(Json::parse(api.get("/v1/fits?material=our-beads").body)["items"].size() == 1);
+}
