@@ -7,7 +7,7 @@
 ///   under
 ///              the experiment's conditions
 ///   populate   once, when grains are made: their sizes; of these effects one may be on
-///   shape      once, when grains are made: the spheres of which a grain consists
+///   shape      once, when grains are made: the spheres of which a grain consists; one may be on
 ///   prepare    once per material pair: Parameters, pair elasticity -> Coefficients
 ///   contact    each step, per block of contacts: columns in, columns out
 ///   reach      each time neighbours are sought: how far from touch it still acts, m
@@ -147,7 +147,7 @@ concept PopulateHook = requires(const typename E::Parameters& parameters, Random
 
 template <class E>
 concept ShapeHook = requires(const typename E::Parameters& parameters) {
-  { E::shape(parameters) } -> std::same_as<std::span<const ClumpMember>>;
+  { E::shape(parameters) } -> std::same_as<std::vector<ClumpMember>>;
 };
 
 template <class E>

@@ -1,10 +1,10 @@
 #include "engine/session.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "engine/catalogue.hpp"
+#include "engine/shape_population.hpp"
 
 namespace repose::engine {
 
@@ -60,17 +60,8 @@ std::string check_parameters(const ParameterSet& parameters) {
                            {MaterialId::wall}};
     if (!parameters.get(key)) return to_string(key) + " must be given";
   }
-  return check_sizes(parameters);
-}
-
-/// The clump that grains are; nothing where they are spheres.
-std::optional<ClumpShape> shape_of_grains(const ParameterSet& parameters) {
-  const auto p = parameters_of<effects::GrainShape>(parameters, {MaterialId::grain});
-  const std::span<const ClumpMember> members = effects::GrainShape::shape(p);
-  if (members.size() == 1) return std::nullopt;
-  auto shape = clump_shape(members);
-  assert(shape && "published shapes hold together");
-  return *std::move(shape);
+  if (std::string problem = check_sizes(parameters); !problem.empty()) return problem;
+  return check_shape(parameters);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "engine/effects/rolling_resistance.hpp"
 #include "engine/effects/size_spread.hpp"
 #include "engine/effects/sliding_friction.hpp"
+#include "engine/effects/sphere_clump.hpp"
 #include "engine/effects/tabulated_sizes.hpp"
 #include "engine/effects/tapping.hpp"
 #include "engine/effects/twisting_resistance.hpp"
@@ -34,6 +35,7 @@ using AllEffects = std::tuple<effects::MoistureSoftening,
                               effects::TabulatedSizes,
                               effects::GrainShape,
                               effects::Tapping,
+                              effects::SphereClump,
                               effects::PlasticRestitution,
                               effects::Hysteresis,
                               effects::Restitution,

@@ -14,7 +14,7 @@
 
 #include <array>
 #include <cmath>
-#include <span>
+#include <vector>
 
 #include "engine/effect.hpp"
 #include "engine/soybean_shapes.hpp"
@@ -31,6 +31,7 @@ struct GrainShape {
       .title = "Grain shape",
       .summary = "Grains are soybeans made of one to four overlapping spheres each.",
       .citation = "Boac et al. 2010, Trans. ASABE 53(4), 1201-1216",
+      .family = "shape",
   };
   static constexpr std::array fields{
       Field<Parameters>{&Parameters::members,
@@ -50,8 +51,9 @@ struct GrainShape {
   }
 
   /// The spheres of a grain, of any size; a single one means that grains are spheres.
-  static std::span<const ClumpMember> shape(const Parameters& p) {
-    return soybean_shapes[static_cast<std::size_t>(std::lround(p.members)) - 1];
+  static std::vector<ClumpMember> shape(const Parameters& p) {
+    const auto published = soybean_shapes[static_cast<std::size_t>(std::lround(p.members)) - 1];
+    return {published.begin(), published.end()};
   }
 };
 

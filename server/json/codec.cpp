@@ -127,6 +127,7 @@ void read_fields(const Place& place,
   const auto names = names_of(fields);
   for (const auto& [name, member] : Members(place).all()) {
     const auto field = std::ranges::find(fields, std::string_view(name), &FieldInfo::name);
+    if (field == fields.end() && sink.other && sink.other(name, member)) continue;
     if (field == fields.end()) {
       const std::string quoted = "\"" + name.substr(0, 64) + "\"";
       member.complain(std::string(what) + " has no " + quoted + did_you_mean(name, names),

@@ -39,10 +39,11 @@ std::optional<double> read_field(const Place& place,
 
 /// An object whose members are fields of a table, each handed on with its SI value. `what` names
 /// the owner of the table ("drop", "grain"). Nothing is handed on of a member that has a problem,
-/// but `named` is told of it.
+/// but `named` is told of it. A member that is no field is a problem unless `other` takes it.
 struct FieldSink {
   std::function<void(const engine::FieldInfo&, double, const Place&)> value;
   std::function<void(const engine::FieldInfo&, const Place&)> named = {};
+  std::function<bool(std::string_view name, const Place&)> other = {};
 };
 void read_fields(const Place& place,
                  std::span<const engine::FieldInfo> fields,

@@ -38,6 +38,8 @@ struct Study {
 };
 
 void read_materials(const Place& place, Study& study);
+/// The spheres that a grain is made of: materials.grain.shape.
+void read_shape(const Place& place, Study& study);
 void read_fixed(const Place& place, Study& study);
 void read_free(const Place& place, Study& study);
 void read_tied(const Place& place, Study& study);

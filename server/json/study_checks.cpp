@@ -7,6 +7,8 @@
 #include "calibrator/design.hpp"
 #include "calibrator/misfit.hpp"
 #include "engine/catalogue.hpp"
+#include "engine/effects/sphere_clump.hpp"
+#include "engine/shape_population.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/study.hpp"
 
@@ -159,10 +161,28 @@ void check_constraints(const Place& document, const Study& study) {
                            "wider bounds, or constraints that leave more"});
 }
 
+/// The shape of the grains, where nothing of it is searched for.
+void check_grains(const Place& document, const Study& study) {
+  const std::string effect = std::string(engine::effects::SphereClump::text.name) + ".";
+  std::string pointer = "/fixed";
+  for (const auto& [key, claim] : study.claims) {
+    if (!key.field.starts_with(effect)) continue;
+    if (claim.part == Part::free || claim.part == Part::tied) return;
+    pointer = claim.pointer;
+  }
+  if (const std::string problem = engine::check_shape(study.calibration.fixed); !problem.empty()) {
+    document.problems().add({pointer,
+                             problem,
+                             "a shape that is no grain",
+                             "spheres that touch one another, none wholly inside another"});
+  }
+}
+
 }  // namespace
 
 void check_study(const Place& document, const Study& study) {
   check_materials(document, study);
+  check_grains(document, study);
   for (const Study::PlacedTie& tie : study.ties) check_tie(tie, study);
   check_contradictions(document, study);
   if (study.free_named == 0) {

@@ -177,6 +177,12 @@ void read_materials(const Place& place, Study& study) {
          .named =
              [&](const FieldInfo& field, const Place& at) {
                study.claims.try_emplace(key_of(field), Study::Claim{Part::materials, at.pointer()});
+             },
+         .other =
+             [&](std::string_view other, const Place& at) {
+               const bool is_shape = other == "shape" && material == MaterialId::grain;
+               if (is_shape) read_shape(at, study);
+               return is_shape;
              }});
   }
 }

@@ -216,6 +216,38 @@ TEST_CASE("a property may be tied instead of given", "[server]") {
   CHECK(read(json).tied[0].factor == 2.0);
 }
 
+TEST_CASE("a grain's spheres become parameters of the clump", "[server]") {
+  Json shaped = study();
+  shaped["materials"]["grain"]["shape"] = Json::parse(
+      R"({"unit": "mm", "spheres": [{"x": 0, "y": 0, "z": 0, "radius": 2.85},
+                                    {"x": 0, "y": 0, "z": 1.89, "radius": 2.85}]})");
+  const auto get = [fixed = read(shaped).fixed](const char* field) {
+    return fixed.get({field, {engine::MaterialId::grain}});
+  };
+  CHECK(get("sphere_clump.radius_1") == Approx(2.85e-3));
+  CHECK(get("sphere_clump.z_2") == Approx(1.89e-3));
+  CHECK_FALSE(get("sphere_clump.radius_3").has_value());
+  const Calibration again = read(Json::parse(print_calibration(read(shaped))));
+  CHECK(again.fixed == read(shaped).fixed);
+}
+
+TEST_CASE("a grain whose spheres make no clump is refused at its shape", "[server]") {
+  const auto with = [](const char* spheres, const char* material = "grain") {
+    Json shaped = study();
+    shaped["materials"][material]["shape"] = {{"unit", "mm"}, {"spheres", Json::parse(spheres)}};
+    return pointers(shaped);
+  };
+  CHECK(with(R"([{"x": 0, "y": 0, "z": 0, "radius": 1}, {"x": 0, "y": 0, "z": 3, "radius": 1}])") ==
+        Strings{"/materials/grain/shape"});
+  CHECK(with("[]") == Strings{"/materials/grain/shape/spheres"});
+  CHECK(with(R"([{"x": 0, "y": 0, "z": 0}])") ==
+        Strings{"/materials/grain/shape/spheres/0/radius"});
+  CHECK(with(R"([{"x": 0, "y": 0, "z": 0, "radius": -1}])") ==
+        Strings{"/materials/grain/shape/spheres/0/radius"});
+  CHECK(with(R"([{"x": 0, "y": 0, "z": 0, "radius": 1}])", "wall") ==
+        Strings{"/materials/wall/shape"});
+}
+
 TEST_CASE("problems of different parts are reported together", "[server]") {
   Json json = study();
   json["name"] = "";
