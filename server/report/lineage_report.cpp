@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 #include "server/report/chart_lineage.hpp"
 #include "server/report/diagnosis_words.hpp"
@@ -242,6 +243,43 @@ std::string fingerprint_section(const Generation& generation) {
          panels + "</div>\n</section>\n";
 }
 
+/// What to measure next, with what each open explanation expects of it.
+std::string next_section(const Generation& generation) {
+  const Diagnosis& diagnosis = *generation.diagnosis;
+  if (diagnosis.next.empty()) return {};
+  std::string text =
+      "<section>\n<h2>What to measure next</h2>\n<div class=\"scroll\"><table>\n"
+      "<tr><th>measurement</th>";
+  std::vector<std::string> rivals;
+  for (const auto& effects : diagnosis.rivals) {
+    rivals.push_back("with " + names_text(diagnosis, effects));
+    text += element("th", rivals.back());
+  }
+  text += "<th>would be known to</th><th>evidence</th></tr>\n";
+  for (const calibrator::DecidingMeasurement& next : diagnosis.next) {
+    calibrator::Measurement what;
+    what.experiment = next.experiment;
+    what.observable = next.observable;
+    const double factor = next.unit.factor, error = next.standard_error / factor;
+    text += "<tr><td>" + escaped(measurement_label(what)) + element("small", place_label(what)) +
+            "</td>";
+    for (std::size_t r = 0; r < next.predicted.size() && r < rivals.size(); ++r) {
+      const double value = next.predicted[r] / factor;
+      text +=
+          cell(rivals[r], fixed_text(value, decimals_for(value, error)) + unit_suffix(next.unit));
+    }
+    text += cell("would be known to",
+                 "± " + fixed_text(error, decimals_for(error, error)) + unit_suffix(next.unit));
+    text += cell("evidence", fixed_text(next.evidence, 1)) + "</tr>\n";
+  }
+  return text + "</table></div>\n" +
+         element("p",
+                 "Measurements on which the open explanations differ most; evidence is their "
+                 "largest difference in squared standard errors.",
+                 "quiet-text") +
+         "\n</section>\n";
+}
+
 std::string shift_section(const Lineage& lineage) {
   return "<section>\n<h2>Parameters, before and after</h2>\n" + model_legend(lineage) +
          "<div class=\"half\">" + shift_chart(lineage) + "</div>\n" +
@@ -267,7 +305,7 @@ std::string lineage_row(const Generation& generation) {
               fixed_text(comparison.misfit, 1) + " / " + fixed_text(comparison.freedom, 0)) +
          cell("p", chance_text(comparison.p)) + cell("fitted", z_text(comparison.fitted_z)) +
          cell("held out", z_text(comparison.held_out_z)) +
-         cell("runs", std::to_string(generation.fit().evaluations)) + cell("then", verdict) +
+         cell("runs", std::to_string(generation.fit().evaluations)) + cell("diagnosis", verdict) +
          "</tr>\n";
 }
 
@@ -308,7 +346,8 @@ std::string print_lineage_report(const Lineage& lineage, const Provenance& prove
                      parity_section(lineage) + error_section(lineage) + trend_section(lineage);
   for (const Generation& generation : lineage) {
     if (!generation.diagnosis) continue;
-    text += ranking_section(generation) + fingerprint_section(generation);
+    text +=
+        ranking_section(generation) + fingerprint_section(generation) + next_section(generation);
   }
   return text + shift_section(lineage) + lineage_section(lineage, provenance) +
          std::string(page_foot);

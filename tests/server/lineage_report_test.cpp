@@ -91,6 +91,14 @@ Lineage sample() {
   refit.misfit = 1.2;
   refit.freedom = 1.0;
   diagnosis.refits = {refit};
+  diagnosis.rivals = {{}, {1}};
+  calibrator::DecidingMeasurement next;
+  next.experiment = {"drop", engine::Fidelity::draft, {{"height", 2.0}}};
+  next.observable = "restitution";
+  next.standard_error = 0.01;
+  next.predicted = {0.70, 0.62};
+  next.evidence = 64.0;
+  diagnosis.next = {next};
   lineage.front().diagnosis = diagnosis;
   return lineage;
 }
@@ -115,6 +123,8 @@ TEST_CASE("a lineage's report says what is missing and what adding it has done",
   CHECK_THAT(text, Contains("3.72 → 0.44"));  // root mean square of 4, 1, 5 and of .5, .5, .3
   CHECK_THAT(text, Contains("5.97 → 1.00"));  // held out
   CHECK_THAT(text, Contains("cannot test: Hysteresis"));
+  CHECK_THAT(text, Contains("height 2000 mm"));  // to be measured next
+  CHECK_THAT(text, Contains("with air drag") && Contains("0.620"));
 }
 
 TEST_CASE("a lineage's report needs nothing from elsewhere and closes what it opens", "[server]") {
