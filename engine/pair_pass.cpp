@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "engine/any_machine.hpp"
@@ -90,16 +91,21 @@ bool within_reach(const PairPass& p, std::uint32_t i, std::uint32_t j) {
 /// Gives four lanes of a block to the grains, as far as they are used.
 [[gnu::always_inline]] inline void scatter(
     PairPass& p, const Waiting& waiting, int lane, int used, int columns, const double* history) {
-  Candidates& all = p.candidates;
+  // Local pointers: a byte that is stored could be any of them.
+  const std::uint32_t* const i = p.candidates.i.data();
+  const std::uint32_t* const j = p.candidates.j.data();
+  std::uint8_t* const closed = p.candidates.closed.data();
+  double* const records = p.candidates.history.data();
+  GrainLoad* const loads = p.loads;
   const auto force = from_lanes(p.block.force, lane);
   const auto torque_i = from_lanes(p.block.torque_i, lane);
   const auto torque_j = from_lanes(p.block.torque_j, lane);
   for (std::size_t q = 0; q < static_cast<std::size_t>(used); ++q) {
     const std::uint32_t k = waiting.candidates[static_cast<std::size_t>(lane) + q];
-    receive(p.loads[all.i[k]], force[q], torque_i[q]);
-    receive(p.loads[all.j[k]], -force[q], torque_j[q]);
-    all.closed[k] = 1;
-    history_from_lane(history, lane + static_cast<int>(q), all.history.data(), columns, k);
+    receive(loads[i[k]], force[q], torque_i[q]);
+    receive(loads[j[k]], -force[q], torque_j[q]);
+    closed[k] = 1;
+    history_from_lane(history, lane + static_cast<int>(q), records, columns, k);
   }
 }
 
@@ -124,6 +130,15 @@ bool within_reach(const PairPass& p, std::uint32_t i, std::uint32_t j) {
   std::copy_n(waiting.candidates.begin() + c.count, lanes_at_once, waiting.candidates.begin());
 }
 
+/// Those of up to four candidates that were closed and do not touch, as bytes of 1.
+[[gnu::always_inline]] inline std::uint32_t opened(const std::uint8_t* closed,
+                                                   unsigned touching,
+                                                   std::uint32_t count) {
+  std::uint32_t were = 0;
+  std::memcpy(&were, closed, count);
+  return were & ~(touching * 0x00204081U & 0x01010101U);  // bit q of `touching` to byte q
+}
+
 /// Tests up to four candidates, from `first` on, and has those wait that touch, or that have
 /// touched and are within reach.
 [[gnu::always_inline]] inline void visit(PairPass& p,
@@ -133,18 +148,40 @@ bool within_reach(const PairPass& p, std::uint32_t i, std::uint32_t j) {
                                          const std::uint32_t* j,
                                          std::uint32_t first,
                                          std::uint32_t count) {
-  const unsigned touching = overlapping(p.rows, i, j, sides);
+  const unsigned all = (1U << count) - 1U;
+  unsigned waits = overlapping(p.rows, i, j, sides) & all;
+  const std::uint32_t apart = opened(p.candidates.closed.data() + first, waits, count);
   for (std::uint32_t q = 0; q < count; ++q) {
-    const bool touches = (touching >> q & 1U) != 0;
-    waiting.candidates[static_cast<std::size_t>(waiting.count)] = first + q;
-    waiting.count += touches ? 1 : 0;
     __builtin_prefetch(p.loads + j[q], 1);
-    if (!touches && p.candidates.closed[first + q] != 0) {
-      if (p.reach > 0.0 && within_reach(p, i[q], j[q])) {
-        ++waiting.count;
-      } else {
-        p.candidates.open(first + q, p.history_columns);
-      }
+    if (apart == 0 || (apart >> 8U * q & 1U) == 0) continue;
+    if (p.reach > 0.0 && within_reach(p, i[q], j[q])) {
+      waits |= 1U << q;
+    } else {
+      p.candidates.open(first + q, p.history_columns);
+    }
+  }
+  // The count stays in a register: in memory each candidate would wait for the one before it.
+  int waiting_now = waiting.count;
+  for (std::uint32_t q = 0; q < count; ++q) {
+    waiting.candidates[static_cast<std::size_t>(waiting_now)] = first + q;
+    waiting_now += static_cast<int>(waits >> q & 1U);
+  }
+  waiting.count = waiting_now;
+}
+
+/// How many candidates before their visit rows are asked for.
+constexpr std::uint32_t ahead = 32;
+/// Candidates whose rows the second cache holds: asking for them would only cost time.
+constexpr std::size_t few_candidates = 25000;
+
+/// Asks for the rows of four candidates.
+[[gnu::always_inline]] inline void ask_for(const GrainRow* rows,
+                                           const std::uint32_t* i,
+                                           const std::uint32_t* j) {
+  for (int q = 0; q < lanes_at_once; ++q) {
+    for (const GrainRow* const row : {rows + i[q], rows + j[q]}) {
+      __builtin_prefetch(&row->x);  // a row begins in one line of the cache and ends in the next
+      __builtin_prefetch(&row->inverse_inertia);
     }
   }
 }
@@ -155,10 +192,14 @@ bool within_reach(const PairPass& p, std::uint32_t i, std::uint32_t j) {
   const auto begin = static_cast<std::uint32_t>(p.first);
   const auto end = static_cast<std::uint32_t>(p.last);
   const std::uint32_t whole = end - (end - begin) % lanes_at_once;
+  const bool far = all.size() > few_candidates;
   p.block.period = p.period;
   Waiting waiting;
   for (std::uint32_t first = begin; first < whole; first += lanes_at_once) {
-    visit(p, waiting, sides, all.i.data() + first, all.j.data() + first, first, lanes_at_once);
+    const std::uint32_t* const i = all.i.data() + first;
+    const std::uint32_t* const j = all.j.data() + first;
+    if (far && whole - first > ahead) ask_for(p.rows, i + ahead, j + ahead);
+    visit(p, waiting, sides, i, j, first, lanes_at_once);
     if (waiting.count < width) continue;
     p.closed += width;
     push_block(p, waiting, columns);
