@@ -60,6 +60,30 @@ TEST_CASE("rain that finds no room says how many it put in", "[engine]") {
   CHECK(session.effort().requested == 1000);
 }
 
+TEST_CASE("a filling that cannot be completed is a failure that says how far it came", "[engine]") {
+  const Trial trial = spread_trial(0.0);
+  Session session(trial, quiet_run);
+  REQUIRE(session.set_up(open_room({plane(0.0)})));
+  const auto below = [](const Vec3& centre, double) { return centre.z < 0.02; };
+  const Rain order{.high_x = 0.05, .high_y = 0.05, .fits = below};
+  CHECK_FALSE(fill_to(session, order, 0.05 * 0.05 * 0.1, 0.1));
+  CHECK(session.failure().kind == FailureKind::did_not_fill);
+  const Effort effort = session.effort();
+  CHECK(session.failure().message == "there was room for " + std::to_string(effort.inserted) +
+                                         " grains of " + std::to_string(effort.requested) +
+                                         " asked for");
+}
+
+TEST_CASE("a filling that does not reach its level is a failure", "[engine]") {
+  const Trial trial = spread_trial(0.0);
+  Session session(trial, quiet_run);
+  const double side = 0.03;
+  REQUIRE(session.set_up(open_room({plane(0.0)}, {side, side, 0.0})));
+  CHECK_FALSE(fill_to(session, {.high_x = side, .high_y = side}, side * side * 0.01, 0.02));
+  CHECK(session.failure().kind == FailureKind::did_not_fill);
+  CHECK(session.failure().message.find("does not reach its level") != std::string::npos);
+}
+
 TEST_CASE("a bed from rain is a random packing, not a lattice", "[engine]") {
   // Beds of this grain poured by two other codes hold 0.57 of solid below a level bed's surface of
   // six grains (measured with them); a settled lattice holds 0.555.

@@ -67,6 +67,13 @@ TEST_CASE("grains that leave the room are counted and gone", "[engine]") {
   CHECK(scene.session.world().grain_count() == 1);
 }
 
+TEST_CASE("soft grains that sink in by a sixth on a hard impact are no failure", "[engine]") {
+  Scene scene({{0, 0, 1.001 * radius}}, {0.0, 0.0, -1.7});
+  CHECK(scene.session.run_for(0.05));
+  CHECK(scene.session.effort().largest_overlap > 0.12);
+  CHECK(scene.session.effort().largest_overlap < 0.20);
+}
+
 TEST_CASE("a bed that never rests is a failure with the time it was given", "[engine]") {
   Scene scene({{0, 0, 0.5}});
   CHECK_FALSE(scene.session.rest(0.1));
