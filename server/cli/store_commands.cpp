@@ -1,9 +1,9 @@
 #include <iostream>
 
 #include "db/backup.hpp"
+#include "server/access/secret.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/exit_code.hpp"
-#include "server/json/evaluation_json.hpp"
 
 namespace repose::server {
 
