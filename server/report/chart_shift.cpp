@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <string>
 
 #include "server/report/chart_lineage.hpp"
@@ -44,12 +43,12 @@ std::string shown(double value, const FreeParameter& free) {
   return number_text(value / free.unit.factor, 3);
 }
 
-/// The parameter's place among the free ones of a model.
-std::optional<std::size_t> place_of(const Generation& generation, const engine::ParameterKey& key) {
-  const auto& free = generation.calibration().free;
-  const auto found = std::ranges::find(free, key, &FreeParameter::key);
-  if (found == free.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - free.begin());
+/// The parameter as a model has fitted it; null where it is not free there.
+const calibrator::FittedParameter* fitted_of(const Generation& generation,
+                                             const engine::ParameterKey& key) {
+  const auto& fitted = generation.fit().parameters;
+  const auto found = std::ranges::find(fitted, key, &calibrator::FittedParameter::key);
+  return found == fitted.end() ? nullptr : &*found;
 }
 
 constexpr double shift_row = 72.0;
@@ -58,22 +57,20 @@ void draw_shift(Svg& svg, const Lineage& lineage, std::size_t index, double top)
   const Generation& last = lineage.back();
   const FreeParameter& free = last.calibration().free[index];
   const auto& now = last.fit().parameters[index];
-  const auto before = lineage.size() > 1 ? place_of(lineage.front(), free.key) : std::nullopt;
+  const auto* before = lineage.size() > 1 ? fitted_of(lineage.front(), free.key) : nullptr;
   std::string words = shown(now.value, free);
-  if (before) {
-    words = shown(lineage.front().fit().parameters[*before].value, free) + " → " + words;
+  if (before != nullptr) {
+    words = shown(before->value, free) + " → " + words;
   }
   words += unit_suffix(free.unit);
-  if (lineage.size() > 1 && !before) words = "new: " + words;
+  if (lineage.size() > 1 && before == nullptr) words = "new: " + words;
   if (now.lower_at_bound || now.upper_at_bound) words += ", interval ends at its bound";
   svg.text(left, top + 13.0, parameter_label(free.key), "start", "label");
   svg.text(left, top + 29.0, words, "start", "small");
   const double middle = top + 44.0;
   svg.rect(left, middle - 6.0, width - 2.0 * left, 12.0, "track");
-  if (before) {
-    draw_fitted(svg, middle - 3.0, free, lineage.front().fit().parameters[*before], 0);
-  }
-  draw_fitted(svg, before ? middle + 3.0 : middle, free, now, lineage.size() - 1);
+  if (before != nullptr) draw_fitted(svg, middle - 3.0, free, *before, 0);
+  draw_fitted(svg, before != nullptr ? middle + 3.0 : middle, free, now, lineage.size() - 1);
   svg.text(left, middle + 20.0, shown(free.lower, free), "start", "tick left");
   svg.text(width - left, middle + 20.0, shown(free.upper, free), "end", "tick right");
 }
