@@ -128,6 +128,7 @@ Recheck recheck(const Calibration& calibration,
   const int count = std::max(plan.confirm, confirming_replicates(ledger));
   const int first = ledger.fresh_replicate(confirmation.site);
   std::vector<Ledger::Request> requests;
+  requests.reserve(static_cast<std::size_t>(count));
   for (int r = 0; r < count; ++r)
     requests.push_back({confirmation.site, first + r, Level::confirm});
   confirmation.runs = ledger.run("confirm", requests);

@@ -5,13 +5,12 @@
 #include <string>
 #include <utility>
 
-#include "calibrator/misfit.hpp"
 #include "db/measurement_store.hpp"
 #include "db/schedule_store.hpp"
 #include "engine/evaluate.hpp"
 #include "engine/random.hpp"
+#include "server/access/secret.hpp"
 #include "server/json/calibration_json.hpp"
-#include "server/json/evaluation_json.hpp"
 #include "server/json/schedule_json.hpp"
 #include "server/measurements.hpp"
 #include "server/nightly/conclusion.hpp"
