@@ -29,7 +29,7 @@ Refusal invalid(const char* what, Problems problems) {
 }
 
 /// The schedule, and that the calibration to start from is one that can be.
-Answer<Schedule> read(db::Store& store, std::string_view document) {
+Answer<NightlySchedule> read(db::Store& store, std::string_view document) {
   auto schedule = read_schedule(store, document);
   if (!schedule) return Unexpected{invalid("the schedule", schedule.error())};
   if (!schedule->start_from) return *std::move(schedule);

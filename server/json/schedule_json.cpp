@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t largest_id = std::numeric_limits<std::int64_t>::max();
 
-void read_timetable(Members& members, Schedule& schedule) {
+void read_timetable(Members& members, NightlySchedule& schedule) {
   const Place cron = members.required("cron", "five fields, such as \"30 2 * * *\"");
   const Place zone = members.required("time_zone", "an IANA name, such as \"Europe/Berlin\"");
   const Place jitter = members.optional("jitter_minutes");
@@ -48,7 +48,7 @@ void read_timetable(Members& members, Schedule& schedule) {
 }
 
 /// The study that stands there, its problems where they stand in the whole document.
-void read_study(const Place& place, const Resolve& resolve, Schedule& schedule) {
+void read_study(const Place& place, const Resolve& resolve, NightlySchedule& schedule) {
   if (!place.exists()) return;
   schedule.submission = to_text(place.json());
   const auto resolved = resolve(schedule.submission);
@@ -126,7 +126,8 @@ Json standing_json(const ScheduleStanding& standing, bool whole) {
 
 }  // namespace
 
-engine::Result<Schedule, Problems> parse_schedule(std::string_view text, const Resolve& resolve) {
+engine::Result<NightlySchedule, Problems> parse_schedule(std::string_view text,
+                                                         const Resolve& resolve) {
   ProblemList problems;
   const auto json = parse_text(text, {}, problems);
   if (!json) return engine::Unexpected{problems.all()};
@@ -135,7 +136,7 @@ engine::Result<Schedule, Problems> parse_schedule(std::string_view text, const R
     whole.complain("a schedule is an object", "an object");
     return engine::Unexpected{problems.all()};
   }
-  Schedule schedule{.timetable = {.cron = {}, .zone = *TimeZone::find("UTC")}};
+  NightlySchedule schedule{.timetable = {.cron = {}, .zone = *TimeZone::find("UTC")}};
   Members members(whole);
   const Place name = members.required("name", "a few words");
   if (const auto words = name.exists() ? name.text(200) : std::nullopt) {
@@ -151,7 +152,7 @@ engine::Result<Schedule, Problems> parse_schedule(std::string_view text, const R
   return schedule;
 }
 
-std::string print_schedule(const Schedule& schedule) {
+std::string print_schedule(const NightlySchedule& schedule) {
   Json json{{"name", schedule.name},
             {"cron", schedule.cron},
             {"time_zone", schedule.timetable.zone.name()},

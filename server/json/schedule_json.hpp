@@ -19,7 +19,7 @@
 
 namespace repose::server {
 
-struct Schedule {
+struct NightlySchedule {
   std::string name = {};
   std::string cron = {};
   Timetable timetable;
@@ -32,10 +32,11 @@ struct Schedule {
 using Resolve = std::function<engine::Result<std::string, Problems>(std::string_view submission)>;
 
 /// All problems of the text at once, or the schedule.
-engine::Result<Schedule, Problems> parse_schedule(std::string_view text, const Resolve& resolve);
+engine::Result<NightlySchedule, Problems> parse_schedule(std::string_view text,
+                                                         const Resolve& resolve);
 
 /// The document that reads back as this schedule.
-std::string print_schedule(const Schedule& schedule);
+std::string print_schedule(const NightlySchedule& schedule);
 
 /// A quantity that is followed from night to night.
 struct Followed {

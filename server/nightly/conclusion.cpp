@@ -11,7 +11,6 @@
 #include "server/json/calibration_json.hpp"
 #include "server/json/fit_json.hpp"
 #include "server/json/schedule_json.hpp"
-#include "server/json/text.hpp"
 #include "server/missing_effect.hpp"
 #include "server/nightly/continuation.hpp"
 #include "server/nightly/promotion.hpp"
@@ -226,12 +225,13 @@ std::optional<NightEnd> conclude(db::Store& store,
     if (promotion.promoted) end.promotion = promotion.reason;
   }
   if (end.outcome == "model_no_longer_adequate") {
-    const auto diagnosis = diagnose(store, options, *night.calibration, {}, stop, {});
-    if (stop.stop_requested()) return std::nullopt;
-    if (diagnosis) {
-      end.diagnosis = whole_member(*diagnosis, "id");
-    } else {
+    const auto diagnosis = queue_diagnosis(store, *night.calibration, {});
+    if (!diagnosis) {
       report.reason += "; no diagnosis: " + diagnosis.error().message;
+    } else {
+      end.diagnosis = *diagnosis;
+      const bool ours = store.start_diagnosis(*diagnosis);  // else it runs already
+      if (ours && !run_diagnosis(store, options, *diagnosis, stop, {})) return std::nullopt;
     }
   }
   end.result = print_night_report(found->study, report);

@@ -90,7 +90,7 @@ void end(ScheduleStore& schedules,
 }
 
 /// Where the measurements are from, so that the fit is found by its material.
-db::SourceRecord source_of(db::Store& store, const Schedule& schedule) {
+db::SourceRecord source_of(db::Store& store, const NightlySchedule& schedule) {
   const auto submission = resolve_submission(store, schedule.submission);
   return submission ? submission->source : db::SourceRecord{};
 }
@@ -186,7 +186,8 @@ std::optional<std::int64_t> begin_night(db::Store& store,
 
 }  // namespace
 
-engine::Result<Schedule, Problems> read_schedule(db::Store& store, std::string_view document) {
+engine::Result<NightlySchedule, Problems> read_schedule(db::Store& store,
+                                                        std::string_view document) {
   return parse_schedule(document,
                         [&](std::string_view text) -> engine::Result<std::string, Problems> {
                           auto submission = resolve_submission(store, text);

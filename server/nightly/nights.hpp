@@ -29,7 +29,8 @@ enum class Begin : std::uint8_t {
 };
 
 /// A schedule's document, with the measurements that are kept now where it names a set of them.
-engine::Result<Schedule, Problems> read_schedule(db::Store& store, std::string_view document);
+engine::Result<NightlySchedule, Problems> read_schedule(db::Store& store,
+                                                        std::string_view document);
 
 /// Begins nights and takes up those that were cut off; the calibrations that are to be run for
 /// them. `now` is microseconds since 1970 UTC.
