@@ -228,7 +228,7 @@ TEST_CASE("Chung & Ooi 5: oblique impact at constant normal speed, sticking",
       report(name + ", spin, curve of the benchmark", row.spin, scaled_spin(got));
       const double apart = row.x * slip_ratio(recoil_impact(stuff, row.x), {});
       const double short_arm = got.overlap / recoil_radius;
-      const Tolerance held = absolute(0.05 + 5 * short_arm);
+      const Tolerance held = absolute(0.005 + 6 * short_arm);
       verify(name + ", recoil, same law apart", apart, scaled_slip(got), held);
       verify(name + ", spin, same law apart", (apart - row.x) / 1.4, scaled_spin(got), held);
     }
