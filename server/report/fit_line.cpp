@@ -46,8 +46,8 @@ std::vector<FitLine> lines_of(const calibrator::Calibration& calibration,
   std::vector<FitLine> lines;
   std::size_t first = 0;
   const std::span<const Prediction> predictions(fit.predictions);
-  if (predictions.size() != calibration.measurements.size()) return lines;
   for (const auto& measured : calibrator::lines_of(calibration.measurements)) {
+    if (first + measured.size() > predictions.size()) break;
     lines.push_back({measured, predictions.subspan(first, measured.size())});
     first += measured.size();
   }

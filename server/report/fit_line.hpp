@@ -20,7 +20,7 @@ struct FitLine {
   [[nodiscard]] double difference() const;  ///< SI, likewise
 };
 
-/// None where there are no predictions.
+/// Those that have predictions.
 std::vector<FitLine> lines_of(const calibrator::Calibration& calibration,
                               const calibrator::Fit& fit);
 

@@ -75,9 +75,10 @@ class Author {
   std::mt19937_64 random_;
 };
 
-calibrator::Measurement any_measurement(Author& author) {
+/// Of the experiment with that number, so that no two contradict each other.
+calibrator::Measurement any_measurement(Author& author, std::size_t experiment) {
   const auto experiments = engine::experiment_catalogue();
-  const engine::ExperimentInfo& info = experiments[author.below(experiments.size())];
+  const engine::ExperimentInfo& info = experiments[experiment % experiments.size()];
   const engine::ObservableInfo& seen = info.observables[author.below(info.observables.size())];
   calibrator::Measurement measurement;
   measurement.experiment.name = info.name;
@@ -122,7 +123,25 @@ Calibration any_calibration(std::uint64_t seed) {
       result.free.push_back({key, lower, upper, scale, unit});
     }
   }
-  for (int i = 0; i < 4; ++i) result.measurements.push_back(any_measurement(author));
+  if (!result.free.empty()) {
+    calibrator::FreeParameter& first = result.free.front();
+    if (author.chance()) first.prior = calibrator::Prior{first.lower, 0.3 * first.unit.factor};
+    result.constraints.push_back({{{first.key, 1.0}}, first.upper, first.unit});
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    result.measurements.push_back(any_measurement(author, seed + i));
+  }
+  calibrator::Measurement point = any_measurement(author, seed + 4);
+  point.observable = "dynamic_angle";
+  point.experiment = {"drum", {}, {{"speed", 1.0}}};
+  point.unit = engine::unit::degree;
+  point.curve = 1;
+  std::erase_if(result.measurements,
+                [](const calibrator::Measurement& m) { return m.experiment.name == "drum"; });
+  result.measurements.push_back(point);
+  point.experiment.settings["speed"] = 2.5;
+  point.value += 0.1;
+  result.measurements.push_back(point);
   if (author.chance()) result.measurements[1].role = calibrator::Role::held_out;
   if (author.chance()) result.suspects = {std::string(engine::effect_catalogue()[0].text.name)};
   result.budget = {.evaluations = 200, .batch = 3, .fidelity = engine::Fidelity::draft};
