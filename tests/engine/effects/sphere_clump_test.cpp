@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/session.hpp"
 #include "engine/soybean_shapes.hpp"
 #include "tests/support/trials.hpp"
 
