@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "calibrator/diagnosis/tolerance.hpp"
 #include "calibrator/uncertainty.hpp"

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/known_ledger.hpp"
 #include "tests/support/toy_study.hpp"
 
 using namespace repose;

@@ -41,7 +41,7 @@ TEST_CASE("a diagnosis is read as it was printed, what would settle it included"
   CHECK(read->effects.front().status == calibrator::EffectStatus::outdone);
   CHECK(read->rivals == written.rivals);
   REQUIRE(read->next.size() == 1);
-  const calibrator::NextMeasurement& next = read->next.front();
+  const calibrator::DecidingMeasurement& next = read->next.front();
   CHECK(next.experiment.name == "drum");
   CHECK(next.experiment.settings.at("speed") == Approx(0.5));
   CHECK(next.predicted[0] == Approx(0.6));
