@@ -18,13 +18,16 @@ Diagnosis open_question() {
   diagnosis.effects.push_back({.suspect = {.name = "air_drag", .title = "Air drag", .levers = {}},
                                .status = calibrator::EffectStatus::outdone});
   diagnosis.rivals = {{0}, {}};
-  diagnosis.next.push_back({.experiment = {"drum", {}, {{"speed", 0.5}}},
-                            .observable = "dynamic_angle",
-                            .unit = engine::unit::degree,
-                            .standard_error = 0.01,
-                            .predicted = {0.6, 0.5},
-                            .evidence = 25.0,
-                            .gain = 3.0});
+  calibrator::DecidingMeasurement next;
+  next.experiment.name = "drum";
+  next.experiment.settings["speed"] = 0.5;
+  next.observable = "dynamic_angle";
+  next.unit = engine::unit::degree;
+  next.standard_error = 0.01;
+  next.predicted = {0.6, 0.5};
+  next.evidence = 25.0;
+  next.gain = 3.0;
+  diagnosis.next.push_back(next);
   diagnosis.evaluations = 42;
   return diagnosis;
 }

@@ -9,6 +9,7 @@
 
 #include "db/store.hpp"
 #include "server/json/report_json.hpp"
+#include "server/json/text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace repose;
