@@ -191,7 +191,9 @@ HttpServer::HttpServer(Responder responder, const HttpOptions& options)
         return state.http.answer(request, keeps_alive);
       },
       [](int status, const std::string& detail) {
-        return print_last_reply(problem_reply(status, detail));
+        Reply reply = problem_reply(status, detail);
+        if (status == 503) reply.headers.emplace_back("Retry-After", "1");
+        return print_last_reply(reply);
       });
 }
 

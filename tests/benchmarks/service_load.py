@@ -32,8 +32,9 @@ class Service:
             [program, "serve", "--port", "0", "--db", database, "--workers", "1"],
             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.port = int(re.search(r":(\d+)/", self.process.stdout.readline()).group(1))
-        while self.get("/readyz")[0] != 200:
-            pass
+        while (status := self.get("/readyz")[0]) != 200:
+            if status != 503:
+                sys.exit(f"{program} answers {status} to /readyz: it is not of this source tree")
         self.seconds_to_ready = time.perf_counter() - self.begin
 
     def connect(self):

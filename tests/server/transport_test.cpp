@@ -217,6 +217,7 @@ TEST_CASE("a request that waits holds up no other, and too many are refused", "[
   }
   const std::string refused = talk(server.port(), wait);
   CHECK(has(refused, "HTTP/1.1 503"));
+  CHECK(has(refused, "Retry-After: 1"));
   server.release();
   for (const Wire& wire : waiting) CHECK(has(wire.rest(), "alive"));
 }
