@@ -236,7 +236,9 @@ bool Session::rest(double limit) {
   return rested;
 }
 
-void Session::stage(std::string_view name) { emit(name); }
+void Session::stage(std::string_view name) {
+  if (!failure_) emit(name);
+}
 
 void Session::emit(std::string_view stage) {
   if (!run_.frames || !world_) return;
