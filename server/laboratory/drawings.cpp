@@ -69,8 +69,8 @@ constexpr std::array drawings{
       ==================  platen, down and up at `speed`
        o o o o o o o o    ^                stress |      /|
       o o o o o o o o o   | depth                 |    /  |   secant_modulus: up
-       o o o o o o o o    |                       |  /   /    residual_strain_ratio: what
-      o_o_o_o_o_o_o_o_o   v                       |/___/___     does not come back
+       o o o o o o o o    |                       |  /   /    residual_strain_ratio:
+      o_o_o_o_o_o_o_o_o   v                       |/___/___     what does not come back
       <---- side ----->   base                        strain
       endless (periodic) both ways; up to `overshoot` x `stress`)"},
 };

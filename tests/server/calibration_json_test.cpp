@@ -144,7 +144,7 @@ Calibration any_calibration(std::uint64_t seed) {
   result.measurements.push_back(point);
   if (author.chance()) result.measurements[1].role = calibrator::Role::held_out;
   if (author.chance()) result.suspects = {std::string(engine::effect_catalogue()[0].text.name)};
-  result.budget = {.evaluations = 200, .batch = 3, .fidelity = engine::Fidelity::draft};
+  result.budget = {.evaluations = 1000, .batch = 3, .fidelity = engine::Fidelity::draft};
   for (auto& each : result.measurements) each.experiment.fidelity = result.budget.fidelity;
   result.seed = seed;
   return result;
