@@ -119,7 +119,8 @@ Calibration any_calibration(std::uint64_t seed) {
       double lower = author.within(*info.field, unit);
       double upper = author.within(*info.field, unit);
       if (lower > upper) std::swap(lower, upper);
-      const auto scale = author.chance() ? calibrator::Scale::log : calibrator::Scale::linear;
+      const bool log = author.chance() && lower > 0.0;
+      const auto scale = log ? calibrator::Scale::log : calibrator::Scale::linear;
       result.free.push_back({key, lower, upper, scale, unit});
     }
   }
