@@ -96,7 +96,11 @@ std::vector<std::string> spelled_in(const std::string& name, const std::vector<S
   for (const auto& file : files) {
     for (auto at = file.text.find(spelled); at != std::string::npos;
          at = file.text.find(spelled, at + 1)) {
-      if (file.text.substr(0, at).ends_with("ObservableInfo{")) continue;
+      std::string before = file.text.substr(0, at);
+      while (!before.empty() && std::isspace(static_cast<unsigned char>(before.back())) != 0) {
+        before.pop_back();
+      }
+      if (before.ends_with("ObservableInfo{")) continue;
       result.push_back(file.path);
       break;
     }
