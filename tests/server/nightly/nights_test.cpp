@@ -1,5 +1,6 @@
 // Night after night with a clock that the test turns: the drop experiment stands for the plant.
 #include <chrono>
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <iomanip>
@@ -246,12 +247,13 @@ TEST_CASE("a removed schedule begins no more nights, and its history stays", "[s
   CHECK(Json::parse(plant.service().schedules())["items"].empty());
 }
 
+// Sixty nights over one clock change; four hundred over three (minutes) where REPOSE_SOAK is set.
 TEST_CASE(
-    "four hundred nights over three clock changes: one a date, the shift found, nothing "
-    "alarmed before it",
+    "night after night over clock changes: one a date, the shift found, nothing alarmed before it",
     "[server][slow]") {
-  constexpr int nights = 400;
-  constexpr int shifted_from = 250;
+  const bool soak = std::getenv("REPOSE_SOAK") != nullptr;
+  const int nights = soak ? 400 : 60;
+  const int shifted_from = soak ? 250 : 40;
   Plant plant;
   plant.add(0.6);
   const auto zone = *TimeZone::find("Europe/Berlin");
@@ -270,7 +272,7 @@ TEST_CASE(
   int alarms_before = 0, first_alarm = nights;
   std::map<std::string, int> outcomes;
   const Json history = plant.history();
-  REQUIRE(history.size() == nights);
+  REQUIRE(history.size() == static_cast<std::size_t>(nights));
   for (int night = 0; night < nights; ++night) {
     const Json& row = history[static_cast<std::size_t>(nights - 1 - night)];
     CHECK(row["state"] == "done");
@@ -286,7 +288,7 @@ TEST_CASE(
     if (night < shifted_from) ++alarms_before;
     if (night >= shifted_from) first_alarm = std::min(first_alarm, night);
   }
-  CHECK(dates.size() == nights);
+  CHECK(dates.size() == static_cast<std::size_t>(nights));
   CHECK(alarms_before == 0);                // stated: one in a thousand nights
   CHECK(first_alarm - shifted_from <= 14);  // two standard errors
   CHECK(outcomes["first"] == 1);
