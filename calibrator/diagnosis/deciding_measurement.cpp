@@ -18,6 +18,7 @@ namespace {
 constexpr double enough = 12.0;       // evidence
 constexpr double worth_while = 1.0;   // evidence below which nothing would be settled
 constexpr double usual_error = 0.02;  // of a measurement's size, where the study has none like it
+constexpr std::string_view single_grain = "drop";  // the experiment that needs no bed
 
 /// Conditions under which a laboratory can repeat an experiment with little trouble. Factors are of
 /// the setting's default.
@@ -139,7 +140,11 @@ DecidingMeasurement weigh(const Candidate& candidate,
 
 std::vector<Candidate> candidates_of(const Calibration& calibration, const Tolerances& stated) {
   std::vector<Candidate> candidates;
+  const bool beds = std::ranges::any_of(calibration.measurements, [](const Measurement& own) {
+    return own.experiment.name != single_grain;
+  });
   for (const engine::ExperimentInfo& info : engine::experiment_catalogue()) {
+    if (!beds && info.name != single_grain) continue;
     std::vector<engine::Experiment> variants{
         {std::string(info.name), calibration.budget.fidelity, {}}};
     for (const Condition& condition : conditions) {

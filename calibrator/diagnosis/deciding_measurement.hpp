@@ -36,8 +36,9 @@ struct Candidate {
 };
 
 /// What the virtual experiments could measure besides the study's own: every experiment at its
-/// defaults, and at other heights, speeds, stresses and sizes. The error is what the study's own
-/// readings of the observable have, else what is usual, and the tolerance of the code.
+/// defaults, and at other heights, speeds, stresses and sizes; for a study of single grains no
+/// beds, which would cost a thousand times its own runs. The error is what the study's own readings
+/// of the observable have, else what is usual, and the tolerance of the code.
 std::vector<Candidate> candidates_of(const Calibration& calibration, const Tolerances& stated);
 
 /// The candidates in the order of what they would settle, best first; those that would settle

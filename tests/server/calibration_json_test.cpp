@@ -136,12 +136,15 @@ Calibration any_calibration(std::uint64_t seed) {
   point.observable = "dynamic_angle";
   point.experiment = {"drum", {}, {{"speed", 1.0}}};
   point.unit = engine::unit::degree;
+  point.value = author.within(0.1, 100.0) * point.unit.factor;
+  point.standard_error = author.within(0.1, 1.0) * point.unit.factor;
+  point.allowance = author.within(0.0, 1.0) * point.unit.factor;
   point.curve = 1;
   std::erase_if(result.measurements,
                 [](const calibrator::Measurement& m) { return m.experiment.name == "drum"; });
   result.measurements.push_back(point);
   point.experiment.settings["speed"] = 2.5;
-  point.value += 0.1;
+  point.value = author.within(0.1, 100.0) * point.unit.factor;
   result.measurements.push_back(point);
   if (author.chance()) result.measurements[1].role = calibrator::Role::held_out;
   if (author.chance()) result.suspects = {std::string(engine::effect_catalogue()[0].text.name)};
