@@ -219,7 +219,9 @@ Answer<std::string> extension_study(const db::Store& store,
                                     std::optional<std::int64_t> diagnosis) {
   const auto own = finished(store, id);
   if (!own) return Unexpected{own.error()};
-  const auto suspects = calibrator::suspects_of(own->calibration, own->fit.best);
+  Calibration any = own->calibration;
+  any.suspects.clear();  // they are the diagnosis's to weigh; a user may add what they will
+  const auto suspects = calibrator::suspects_of(any, own->fit.best);
   const auto found = std::ranges::find(suspects, effect, &calibrator::Suspect::name);
   if (found == suspects.end()) return Unexpected{no_extension(suspects, effect)};
   if (!found->objection.empty()) {

@@ -31,41 +31,22 @@ json read(const Answer<std::string>& answer) {
   return json::parse(*answer);
 }
 
-const json& named(const json& effects, const std::string& name) {
-  for (const json& effect : effects) {
-    if (effect["name"] == name) return effect;
-  }
-  FAIL("no effect " + name);
-  return effects;
-}
-
 constexpr double relaxation = 3e-5;  // s
 
 }  // namespace
 
-TEST_CASE("a speed dependence that our own engine hid is named, added, and the error falls",
-          "[server]") {
+TEST_CASE("a speed dependence that our own engine hid is added, and the error falls", "[server]") {
   const TemporaryFolder folder;
   Service service(in(folder));
-  const json base = read(service.calibrate(hidden_drop_study(relaxation), {}, {}));
-  const std::int64_t id = base["id"];
+  const std::int64_t id = read(service.calibrate(hidden_drop_study(relaxation), {}, {}))["id"];
   const json before = read(service.compare(id, {}));
   CHECK(before["p"] < 0.01);
   CHECK(before["before"].is_null());
-
-  const json diagnosis = read(service.diagnose(id, {}, {}, {}));
-  REQUIRE(diagnosis["state"] == "done");
-  const json& result = diagnosis["result"];
-  CHECK(named(result["effects"], "velocity_restitution")["status"] == "supported");
-  const json& wet = named(result["effects"], "moisture_softening");
-  CHECK(wet["status"] == "not_probed");
-  CHECK(wet["objection"].get<std::string>().find("same moisture") != std::string::npos);
 
   const auto study = service.extension_study(id, "velocity_restitution");
   REQUIRE(study);
   const json child = read(service.calibrate(*study, {}, {}));
   REQUIRE(child["state"] == "done");
-  CHECK(child["study"]["extends"]["diagnosis"] == diagnosis["id"]);
   const json after = read(service.compare(child["id"], {}));
   CHECK(after["before"]["misfit"] == before["misfit"]);
   CHECK(after["misfit"].get<double>() < 0.1 * before["misfit"].get<double>());
@@ -77,7 +58,6 @@ TEST_CASE("a speed dependence that our own engine hid is named, added, and the e
   REQUIRE(items);
   REQUIRE(items->size() == 2);
   CHECK(items->front().calibration == id);
-  CHECK(items->front().diagnosis == diagnosis["id"]);
   CHECK(items->back().parent == id);
   CHECK(items->back().effect == "velocity_restitution");
   CHECK(*service.lineage(id) != *lineage);  // another was asked for
@@ -88,7 +68,7 @@ TEST_CASE("a diagnosis that was stopped is taken up, and one that is cancelled i
           "[server]") {
   const TemporaryFolder folder;
   Service service(in(folder));
-  const std::int64_t id = read(service.calibrate(hidden_drop_study(relaxation), {}, {}))["id"];
+  const std::int64_t id = read(service.calibrate(hidden_drop_study(0.0), {}, {}))["id"];
   std::stop_source source;
   DiagnosisEvents events;
   events.trial = [&source](std::size_t, std::size_t, bool) { source.request_stop(); };
@@ -97,6 +77,7 @@ TEST_CASE("a diagnosis that was stopped is taken up, and one that is cancelled i
   const json done = read(service.diagnose(id, {}, {}, {}));
   CHECK(done["id"] == stopped["id"]);
   CHECK(done["state"] == "done");
+  CHECK(done["result"]["verdict"] == "adequate");
 
   const json waiting = read(service.submit_diagnosis(id, R"({"tolerances":{}})"));
   CHECK(waiting["state"] == "queued");
@@ -139,7 +120,7 @@ TEST_CASE("a queued diagnosis is run in the background, and an extension too", "
   std::int64_t id = 0, diagnosis = 0;
   {
     Service service(in(folder));  // does not run jobs
-    id = read(service.calibrate(hidden_drop_study(relaxation), {}, {}))["id"];
+    id = read(service.calibrate(hidden_drop_study(0.0), {}, {}))["id"];
     diagnosis = read(service.submit_diagnosis(id, "{}"))["id"];
   }
   ServiceOptions options = in(folder);

@@ -29,7 +29,8 @@ inline double dropped(double height, double relaxation) {
   return std::get<std::vector<engine::Observation>>(evaluation.outcome).front().value;
 }
 
-/// The study document. One measurement in four is held out.
+/// The study document. One measurement in four is held out. Where nothing is hidden its diagnosis
+/// is a matter of drops; else it asks every experiment what to measure next, which takes long.
 inline std::string hidden_drop_study(double relaxation) {
   std::string measurements;
   int index = 0;
@@ -51,7 +52,7 @@ inline std::string hidden_drop_study(double relaxation) {
          R"("lower":0.3,"upper":0.95,"unit":"1"}],)"
          R"("measurements":[)" +
          measurements +
-         R"(],"suspects":["velocity_restitution","air_drag","moisture_softening"],)"
+         R"(],"suspects":["velocity_restitution"],)"
          R"("budget":{"evaluations":20,"batch":2,"fidelity":"draft"},"seed":1})";
 }
 
