@@ -31,7 +31,7 @@ json read(const Answer<std::string>& answer) {
   return json::parse(*answer);
 }
 
-constexpr double relaxation = 3e-5;  // s
+constexpr double relaxation = 6e-5;  // s
 
 }  // namespace
 

@@ -34,16 +34,16 @@ inline double dropped(double height, double relaxation) {
 inline std::string hidden_drop_study(double relaxation) {
   std::string measurements;
   int index = 0;
-  for (const double height : {0.02, 0.04, 0.08, 0.15, 0.3, 0.6, 1.2, 2.0}) {
+  for (const double height : {0.004, 0.008, 0.016, 0.032, 0.064, 0.128}) {
     measurements += std::string(index == 0 ? "" : ",") +
                     R"({"experiment":"drop","observable":"restitution","unit":"1",)" +
-                    R"("standard_error":0.005,"value":)" +
+                    R"("standard_error":0.003,"value":)" +
                     std::to_string(dropped(height, relaxation)) +
                     R"(,"settings":{"height":{"value":)" + std::to_string(height) +
                     R"(,"unit":"m"}},"role":")" + (index % 4 == 2 ? "held_out" : "fit") + R"("})";
     ++index;
   }
-  return R"({"name":"drops from eight heights","materials":{"grain":{)"
+  return R"({"name":"drops from six heights","materials":{"grain":{)"
          R"("density":{"value":1228,"unit":"kg/m3"},"diameter":{"value":6.496,"unit":"mm"},)"
          R"("shear_modulus":{"value":1.04,"unit":"MPa"},"poisson_ratio":{"value":0.25,"unit":"1"}},)"
          R"("wall":{"shear_modulus":{"value":80,"unit":"GPa"},)"
@@ -53,7 +53,7 @@ inline std::string hidden_drop_study(double relaxation) {
          R"("measurements":[)" +
          measurements +
          R"(],"suspects":["velocity_restitution"],)"
-         R"("budget":{"evaluations":20,"batch":2,"fidelity":"draft"},"seed":1})";
+         R"("budget":{"evaluations":12,"batch":2,"fidelity":"draft"},"seed":1})";
 }
 
 }  // namespace repose::tests
