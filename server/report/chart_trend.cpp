@@ -136,7 +136,8 @@ std::string panel(const Lineage& lineage, const calibrator::ResidualTrend& trend
   std::ranges::replace(words, '_', ' ');
   svg.text(0.5 * (left + right),
            bottom + 34.0,
-           words + unit_suffix(unit) + (x.logarithmic ? ", logarithmic" : ""),
+           words + (unit.symbol == "1" ? "" : "," + unit_suffix(unit)) +
+               (x.logarithmic ? " (logarithmic)" : ""),
            "middle",
            "quiet");
   draw_model(svg, x, y, points, lineage, 0);

@@ -85,7 +85,7 @@ td.open { color: var(--quiet); font-style: italic; }
 .legend .m2 { background: var(--m2); } .legend .m3 { background: var(--m3); }
 .legend .open { border: 2.4px solid var(--quiet); }
 .legend .part-one, .legend .part-two, .legend .part-three { border-radius: 2px; background: var(--part); }
-.legend .part-two { opacity: .6; } .legend .part-three { opacity: .3; }
+.legend .part-one { opacity: .56; } .legend .part-two { opacity: .33; } .legend .part-three { opacity: .16; }
 .legend .raw { border-radius: 2px; border: 1.4px solid var(--m1); }
 .legend .projected { border-radius: 2px; background: var(--m1); }
 .legend .missing { background: var(--high-3); }
