@@ -189,7 +189,8 @@ TEST_CASE("a night takes the measurements of a set as they are that night, and t
   CHECK(plant.service().add_schedule(to_text(schedule_of(study))).error().problems[0].pointer ==
         "/study/measurement_set");
   std::vector<std::string> kinds;
-  for (const Json& event : Json::parse(*plant.service().events(std::nullopt, 200, 0))["items"]) {
+  const Json told = Json::parse(*plant.service().events(std::nullopt, 200, 0));
+  for (const Json& event : told["items"]) {
     const auto kind = event["kind"].get<std::string>();
     if (kind.starts_with("night") || kind == "promotion") kinds.push_back(kind);
   }
