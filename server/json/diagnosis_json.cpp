@@ -10,8 +10,8 @@
 #include "engine/catalogue.hpp"
 #include "engine/evaluate.hpp"
 #include "server/json/codec.hpp"
-#include "server/json/key_json.hpp"
 #include "server/json/deciding_measurement_json.hpp"
+#include "server/json/key_json.hpp"
 #include "server/json/parameters_json.hpp"
 #include "server/json/read_key.hpp"
 
