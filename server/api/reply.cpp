@@ -16,8 +16,6 @@ Reply accepted(const Answer<std::string>& answer, std::string_view collection) {
   if (const auto id = whole_member(*answer, "id")) {
     reply.headers.emplace_back("Location", std::string(collection) + "/" + std::to_string(*id));
   }
-  constexpr const char* seconds = "2";  // a drop study takes about so long, others longer
-  reply.headers.emplace_back("Retry-After", seconds);
   return reply;
 }
 

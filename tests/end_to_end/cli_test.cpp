@@ -140,8 +140,13 @@ TEST_CASE("a file or address that cannot be used is exit code 2 and says why", "
       "&1");
   CHECK(rubbish.exit_code == 2);
   CHECK_THAT(rubbish.output, Contains(file));
-  const Ran address =
-      repose("serve --host 192.0.2.1 --db " + (folder.path / "a.db").string(), "&1");
+  const std::string database = (folder.path / "a.db").string();
+  const std::string serve = "serve --host 192.0.2.1 --db " + database;
+  const Ran open = repose(serve, "&1");
+  CHECK(open.exit_code == 2);
+  CHECK_THAT(open.output, Contains("there are no tokens yet") && Contains("repose token create"));
+  REQUIRE(repose("token create any --scope submit --db " + database).exit_code == 0);
+  const Ran address = repose(serve, "&1");
   CHECK(address.exit_code == 2);
   CHECK_THAT(address.output, Contains("cannot listen on 192.0.2.1") && Contains("--port"));
 }
