@@ -223,7 +223,7 @@ std::string shown(const Request& request) {
 
 }  // namespace
 
-TEST_CASE("three thousand requests made from the description get answers that it describes",
+TEST_CASE("eight thousand requests made from the description get answers that it describes",
           "[schemas][slow]") {
   const TemporaryFolder folder;
   repose::server::ServiceOptions options;
@@ -234,7 +234,7 @@ TEST_CASE("three thousand requests made from the description get answers that it
   constexpr std::uint64_t seed = 20261129;
   Requests requests(description, seed);
   std::map<std::string, int> outcomes;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 8000; ++i) {
     Request request = requests.next();
     Request routed = request;
     const auto route = repose::server::find_route(routed);
