@@ -170,6 +170,10 @@ bool Session::check() {
     return g.x < low.x || g.x > high.x || g.y < low.y || g.y > high.y || g.z < low.z ||
            g.z > high.z;
   });
+  if (apparatus_.closed && left_ > 0) {
+    return fail(FailureKind::unstable,
+                std::to_string(left_) + " grain(s) went through a wall and were lost");
+  }
   if (!std::isfinite(world_->kinetic_energy())) {
     return fail(FailureKind::unstable, "a grain's motion is no longer a number");
   }

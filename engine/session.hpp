@@ -25,6 +25,7 @@ struct Apparatus {
   Vec3 low, high;                ///< corners of the room, m; grains that leave it are removed
   double time_step_share = 0.2;  ///< time step over the Rayleigh time of the smallest grain
   double fastest = 1.0;          ///< speed at which grains may meet, m/s
+  bool closed = false;           ///< no grain may leave the room: one that does went through a wall
 };
 
 class Session {

@@ -176,7 +176,8 @@ Readings Compression::run(const Settings& s, Session& session) {
                        .low = {-1e3, -1e3, -s.depth},
                        .high = {1e3, 1e3, tall},
                        .time_step_share = s.time_step,
-                       .fastest = std::sqrt(2.0 * 9.81 * 4.0 * s.depth)})) {
+                       .fastest = std::sqrt(2.0 * 9.81 * 4.0 * s.depth),
+                       .closed = true})) {
     return {};
   }
   const Rain order{.high_x = s.side, .high_y = s.side};

@@ -25,9 +25,12 @@ struct Scene {
   Run run;
   Session session{trial, run};
 
-  explicit Scene(const std::vector<Vec3>& centres, Vec3 velocity = {}) {
-    REQUIRE(session.set_up(
-        {.walls = {plane(0.0)}, .period = {}, .low = {-1, -1, -0.01}, .high = {1, 1, 1}}));
+  explicit Scene(const std::vector<Vec3>& centres, Vec3 velocity = {}, bool closed = false) {
+    REQUIRE(session.set_up({.walls = {plane(0.0)},
+                            .period = {},
+                            .low = {-1, -1, -0.01},
+                            .high = {1, 1, 1},
+                            .closed = closed}));
     for (const Vec3& centre : centres) {
       GrainRow grain = session.next_grain();
       grain.x = centre.x;
@@ -66,6 +69,14 @@ TEST_CASE("grains that leave the room are counted and gone", "[engine]") {
   CHECK(scene.session.run_for(0.05));
   CHECK(scene.session.left_the_room() == 1);
   CHECK(scene.session.world().grain_count() == 1);
+}
+
+TEST_CASE("a grain that leaves a closed room ends the run by name", "[engine]") {
+  Scene scene({{0.9, 0, 0.5}, {0, 0, radius}}, {5.0, 0.0, 0.0}, true);
+  CHECK_FALSE(scene.session.run_for(0.05));
+  CHECK(scene.session.failure().kind == FailureKind::unstable);
+  CHECK(scene.session.failure().message == "1 grain(s) went through a wall and were lost");
+  CHECK(scene.session.failure().simulated_seconds == Approx(0.02).margin(0.01));
 }
 
 TEST_CASE("soft grains that sink in by a sixth on a hard impact are no failure", "[engine]") {
