@@ -6,6 +6,7 @@
 Needs Debian's packages liggghts and lammps, and a built ./build/repose. Every answer is kept in
 --keep as it comes, and not asked for again: an interrupted comparison goes on where it was.
 repose's frames are read again by the rules that the other codes' are read by; both are shown.
+LAMMPS has no couple of constant size: repose with its own rolling spring stands beside it.
 """
 import argparse
 import json
@@ -24,26 +25,35 @@ sys.path.insert(0, str(ROOT / "tests/benchmarks"))  # the decks' physics are the
 import apparatus  # noqa: E402
 import reading  # noqa: E402
 
-UNITS = {"mm": 1e-3, "m": 1.0, "1": 1.0, "kPa": 1e3, "mm/s": 1e-3, "m/s": 1.0, "kg/s": 1.0,
-         "deg/s": math.pi / 180, "rpm": math.pi / 30, "s": 1.0}
+SPRING = "repose, rolling spring"
+LIKE_WITH_LIKE = [("repose", "liggghts"), (SPRING, "lammps")]
+# The reference grain's couple of 0.05 as a spring of the same cap.
+SPRING_WORDS = [word for sides in ("grain-grain", "grain-wall") for word in
+                ("--set", f"rolling_resistance.coefficient:{sides}=0",
+                 "--set", f"elastic_rolling_resistance.coefficient:{sides}=0.05")]
 
 
 def settings(repose, scene, fidelity):
     """Of the experiment, SI."""
     text = subprocess.run([repose, "catalogue", "--json"], check=True, capture_output=True).stdout
-    told = next(e for e in json.loads(text)["experiments"] if e["name"] == scene)
-    return {field["name"]: field["default"][fidelity] * UNITS[field["unit"]]
+    catalogue = json.loads(text)
+    factors = {unit["symbol"]: unit["si_factor"] for unit in catalogue["units"]}
+    told = next(e for e in catalogue["experiments"] if e["name"] == scene)
+    return {field["name"]: field["default"][fidelity] * factors[field["unit"]]
             for field in told["settings"] if not isinstance(field["default"][fidelity], str)}
 
 
-def run_repose(repose, setup, scene, fidelity, folder):
+def run_repose(repose, setup, scene, fidelity, folder, more=()):
     words = [repose, "evaluate", scene, "--seed", setup.seed, "--fidelity", fidelity, "--json"]
-    if setup.read_frames:
+    words += more
+    if setup.read_frames and not more:
         words += ["--frames", folder, "--frame-interval", setup.frame_interval or 1e6]
     done = subprocess.run(list(map(str, words)), capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(map(str, words))}: {done.stdout}{done.stderr}")
     told = {o["name"]: o["value"] for o in json.loads(done.stdout)["observations"]}
+    if more:
+        return {SPRING: told}
     answer = {"repose": told}
     if setup.read_frames:
         answer["repose, read here"] = setup.read_frames(reading.vtp_frames(folder))
@@ -72,13 +82,16 @@ def ask(programs, scene, fidelity, seed, keep):
     answers = {}
     known = settings(programs["repose"], scene, fidelity)
     for code, program in programs.items():
-        kept = keep / f"{scene}-{fidelity}-{seed}-{code}.json"
+        kept = keep / f"{scene}-{fidelity}-{seed}-{code.replace(', ', '-').replace(' ', '-')}.json"
         if not kept.exists():
             setup = apparatus.ALL[scene](known, seed)
             with tempfile.TemporaryDirectory() as folder:
                 folder = pathlib.Path(folder)
-                answer = (run_repose(program, setup, scene, fidelity, folder) if code == "repose"
-                          else run_peer(code, program, setup, folder))
+                if code in ("repose", SPRING):
+                    more = SPRING_WORDS if code == SPRING else ()
+                    answer = run_repose(program, setup, scene, fidelity, folder, more)
+                else:
+                    answer = run_peer(code, program, setup, folder)
             kept.write_text(json.dumps(answer))
             print(f"  {kept.stem}: {answer}", file=sys.stderr, flush=True)
         answers.update(json.loads(kept.read_text()))
@@ -101,19 +114,18 @@ def apart(ours, theirs):
 
 
 def table(results, codes):
-    others = [code for code in codes if code != "repose"]
-    print("| observable | repose | read again | " + " | ".join(others) + " | "
-          + " | ".join(f"repose less {code}; standard errors" for code in others) + " |")
-    print("|---" * (3 + 2 * len(others)) + "|")
+    columns = ["repose", "repose, read here", *(code for code in codes if code != "repose")]
+    pairs = [pair for pair in LIKE_WITH_LIKE if set(pair) <= set(codes)]
+    titles = columns + [f"{ours} less {theirs}; standard errors" for ours, theirs in pairs]
+    print("| observable | " + " | ".join(titles) + " |")
+    print("|---" * (1 + len(titles)) + "|")
     for scene, seeds in results.items():
         for name in seeds[0]["repose"]:
             def of(code):
                 return [a[code][name] for a in seeds if name in a.get(code, {})]
-            again = of("repose, read here")
-            cells = [f"{scene}, {name}", figure(of("repose")), figure(again) if again else ""]
-            cells += [figure(of(code)) for code in others]
-            cells += [apart(of("repose"), of(code)) for code in others]
-            print("| " + " | ".join(cells) + " |")
+            cells = [figure(of(code)) if of(code) else "" for code in columns]
+            cells += [apart(of(ours), of(theirs)) for ours, theirs in pairs]
+            print(f"| {scene}, {name} | " + " | ".join(cells) + " |")
 
 
 def main():
@@ -128,7 +140,7 @@ def main():
     parser.add_argument("--keep", type=pathlib.Path, default=ROOT / "build/cross_code")
     parser.add_argument("--json", type=pathlib.Path, help="write every reading there")
     asked = parser.parse_args()
-    programs = {"repose": asked.repose, "liggghts": asked.liggghts, "lammps": asked.lammps}
+    programs = {"repose": asked.repose, SPRING: asked.repose, "liggghts": asked.liggghts, "lammps": asked.lammps}
     programs = {code: program for code, program in programs.items() if program}
     asked.keep.mkdir(parents=True, exist_ok=True)
     results = {scene: [ask(programs, scene, asked.fidelity, seed, asked.keep)
