@@ -66,12 +66,15 @@ def run_peer(code, program, setup, folder):
     for name, text in setup.parts(code).items():
         deck = deck.replace(f"${name.upper()}$", text)
     (folder / f"{code}.in").write_text(deck)
-    words = [program, "-in", f"{code}.in", "-log", "none"]
+    words = ["stdbuf", "-o0", program, "-in", f"{code}.in", "-log", "none"]
     for name, value in setup.variables(code).items():
         words += ["-var", name, str(value)]
     done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
     if done.returncode != 0:
-        sys.exit(f"{' '.join(words)} in {folder} failed:\n{(done.stdout + done.stderr)[-2000:]}")
+        told = [line for line in done.stdout.splitlines() if line.startswith("ERROR")]
+        print(f"  {code} stopped and is left out: {' '.join(told) or done.stderr[-500:]}",
+              file=sys.stderr)
+        return {}
     dump = folder / "frames.dump"
     frames = reading.dump_frames(dump, apparatus.STEP) if dump.exists() else []
     return {code: setup.read(frames, done.stdout)}
@@ -92,6 +95,8 @@ def ask(programs, scene, fidelity, seed, keep):
                     answer = run_repose(program, setup, scene, fidelity, folder, more)
                 else:
                     answer = run_peer(code, program, setup, folder)
+            if not answer:
+                continue
             kept.write_text(json.dumps(answer))
             print(f"  {kept.stem}: {answer}", file=sys.stderr, flush=True)
         answers.update(json.loads(kept.read_text()))
