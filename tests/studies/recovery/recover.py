@@ -6,6 +6,8 @@
 synthetic  six observables of four experiments, five free parameters; the targets are means of the
            engine's own runs at a truth that no method is told
 soybean    bulk density, angle of repose and restitution of the worked example
+laboratory all twelve observables of the seven experiments, drop and drum under two conditions, eight free
+           parameters: what the worked example ties to the grains is free at the walls
 
 A calibration has solved its study where four fresh runs at the set it recommends are, on average, within one
 standard error of every target. Each result is a line of FOLDER/CASE.jsonl, so an interrupted run is taken up
@@ -16,9 +18,13 @@ import argparse, json, math, pathlib, random, statistics, subprocess, sys
 SOURCE = pathlib.Path(__file__).resolve().parents[3]
 PAIR = ["grain", "grain"]
 # Standard errors of a careful laboratory, absolute, or relative where below zero.
-OBSERVED = [("tilting_box", "static_angle", "deg", 1.0), ("tilting_box", "onset_angle", "deg", 1.5),
-            ("heap", "heap_angle", "deg", 1.0), ("compression", "secant_modulus", "MPa", -0.05),
-            ("compression", "residual_strain_ratio", "1", 0.02), ("drop", "restitution", "1", 0.02)]
+SYNTHETIC = [("tilting_box", "static_angle", "deg", 1.0), ("tilting_box", "onset_angle", "deg", 1.5),
+             ("heap", "heap_angle", "deg", 1.0), ("compression", "secant_modulus", "MPa", -0.05),
+             ("compression", "residual_strain_ratio", "1", 0.02), ("drop", "restitution", "1", 0.02)]
+LABORATORY = [*SYNTHETIC, ("kettle", "bulk_density", "kg/m3", 7.0),
+              ("draw_down", "discharge_rate", "kg/(s m)", -0.03), ("draw_down", "drain_angle", "deg", 1.5),
+              ("drum", "dynamic_angle", "deg", 1.0), ("drum", "dynamic_angle", "deg", 1.0, "speed", 30, "rpm"),
+              ("drop", "restitution", "1", 0.02, "height", 50, "mm")]
 
 
 def run(program, *arguments, text=None):
@@ -36,19 +42,27 @@ def name_of(parameter):
     return parameter["field"] + ":" + "-".join(parameter["between"])
 
 
+def place_of(measurement):
+    """Where it was measured: the experiment and its conditions."""
+    conditions = ((n, s["value"], s["unit"]) for n, s in measurement.get("settings", {}).items()
+                  if isinstance(s, dict))
+    return measurement["experiment"], tuple(sorted(conditions))
+
+
 def observe(program, study, values, first_seed, count):
     """Means over `count` seeds of every measurement's observable, in its unit, at one parameter set."""
     means = {}
-    for experiment in sorted({m["experiment"] for m in study["measurements"]}):
+    for experiment, conditions in sorted({place_of(m) for m in study["measurements"]}):
+        settings = [f"--setting={name}={value}{unit}" for name, value, unit in conditions]
         unit = {p["field"]: p["unit"] for p in study["free"]}
         sets = [f"--set={key}={value!r} {unit[key.split(':')[0]]}" for key, value in values.items()]
         path = pathlib.Path(args.folder) / "study.json"
         path.write_text(json.dumps(study))
         answer = run(program, "evaluate", experiment, "--study", str(path), "--fidelity",
                      study["budget"]["fidelity"], "--seed", str(first_seed), "--replicates", str(count),
-                     "--json", *sets)
+                     "--json", *sets, *settings)
         for o in answer["observations"]:
-            means[experiment, o["name"]] = (o["value"], o["unit"])
+            means[(experiment, conditions), o["name"]] = (o["value"], o["unit"])
     return means
 
 
@@ -58,9 +72,8 @@ def soybean(program, seed):
     return study
 
 
-def synthetic(program, seed):
+def measured(program, study, seed, observed):
     """Truth in the middle eight tenths of every range; the targets are means of eight runs."""
-    study = example()
     study["seed"] = seed
     draw = random.Random(seed)
     truth = {}
@@ -68,22 +81,35 @@ def synthetic(program, seed):
         u = draw.uniform(0.1, 0.9)
         low, high = p["lower"], p["upper"]
         truth[name_of(p)] = low * (high / low) ** u if p.get("scale") == "log" else low + u * (high - low)
-    study["measurements"] = [{"experiment": e, "observable": o} for e, o, _, _ in OBSERVED]
+    study["measurements"] = [{"experiment": e, "observable": o, "value": 1, "unit": unit, "standard_error": 1,
+                              **({"settings": {condition[0]: dict(zip(("value", "unit"), condition[1:]))}}
+                                 if condition else {})} for e, o, unit, _, *condition in observed]
     study["budget"]["fidelity"] = "draft"
-    bare = dict(study, measurements=[dict(m, value=1, unit=u, standard_error=1) for m, (_, _, u, _) in
-                                     zip(study["measurements"], OBSERVED)])
-    means = observe(program, bare, truth, 900001, 8)
-    for m, (e, o, unit, error) in zip(study["measurements"], OBSERVED):
-        value, m["unit"] = means[e, o]
-        m["value"] = value
-        m["standard_error"] = error if error > 0 else -error * value
+    means = observe(program, study, truth, 900001, 8)
+    for m, (_, _, _, error, *_) in zip(study["measurements"], observed):
+        m["value"], m["unit"] = means[place_of(m), m["observable"]]
+        m["standard_error"] = error if error > 0 else -error * m["value"]
     return study
+
+
+def synthetic(program, seed):
+    return measured(program, example(), seed, SYNTHETIC)
+
+
+def laboratory(program, seed):
+    study = example()
+    free = {p["field"]: p for p in study["free"]}
+    for tie in study.pop("tied"):
+        wide = free[tie["field"]]
+        study["free"].append({**wide, "between": tie["between"], "lower": wide["lower"] * tie["factor"],
+                              "upper": wide["upper"] * tie["factor"]})
+    return measured(program, study, seed, LABORATORY)
 
 
 def solve(program, case, seed, method):
     path = pathlib.Path(args.folder) / f"{case}-{seed}.json"
     if not path.exists():
-        study = {"synthetic": synthetic, "soybean": soybean}[case](program, seed)
+        study = CASES[case](program, seed)
         path.write_text(json.dumps(study))
     study = json.loads(path.read_text())
     study["budget"] = {"evaluations": args.evaluations, "batch": 4, "fidelity": "draft", "method": method}
@@ -99,8 +125,9 @@ def solve(program, case, seed, method):
         return dict(result, solved=False)
     best = {name_of(p): p["value"] for p in fit["parameters"]}
     means = observe(program, study, best, 800001, 4)
-    z = {f"{m['experiment']} {m['observable']}": (means[m["experiment"], m["observable"]][0] - m["value"]) /
-         m["standard_error"] for m in study["measurements"]}
+    z = {" ".join(map(str, (m["experiment"], *place_of(m)[1], m["observable"]))):
+         (means[place_of(m), m["observable"]][0] - m["value"]) / m["standard_error"]
+         for m in study["measurements"]}
     return dict(result, z=z, solved=all(abs(x) <= 1 for x in z.values()))
 
 
@@ -116,11 +143,14 @@ def table(results):
               f"{statistics.median(r['learnt'] for r in rows):6g}")
 
 
+CASES = {"synthetic": synthetic, "soybean": soybean, "laboratory": laboratory}
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--program", default=str(SOURCE / "build/repose"))
     parser.add_argument("--folder", default=".")
-    parser.add_argument("--case", choices=["synthetic", "soybean"], default="synthetic")
+    parser.add_argument("--case", choices=list(CASES), default="synthetic")
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--methods", default="repose,cma_es,filter")
     parser.add_argument("--evaluations", type=int, default=40)
