@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Questions whose every row is something wrong; the sentence ends with the row's first column.
-constexpr std::array<std::pair<const char*, const char*>, 8> invariants{{
+constexpr std::array<std::pair<const char*, const char*>, 10> invariants{{
     {"done without a fit: calibration ",
      "SELECT id FROM calibration WHERE state = 'done' AND fit IS NULL"},
     {"ended before it began: calibration ",
@@ -36,6 +36,11 @@ constexpr std::array<std::pair<const char*, const char*>, 8> invariants{{
      "HAVING count(*) > 1"},
     {"empty question or answer of evaluation ",
      "SELECT key FROM evaluation WHERE question = '' OR answer = ''"},
+    {"answered, but its answer is missing: attempt at ",
+     "SELECT a.key FROM attempt a LEFT JOIN evaluation e ON e.key = a.key "
+     "WHERE a.state = 'answered' AND e.key IS NULL"},
+    {"numbers are missing between the attempts at ",
+     "SELECT key FROM attempt GROUP BY key HAVING max(n) + 1 <> count(*)"},
 }};
 
 /// Each row of a check of SQLite's own that is not "ok".

@@ -118,6 +118,7 @@ class Store {
                                                  std::optional<std::int64_t> after) const;
 
  private:
+  friend class AttemptStore;      // db/attempt_store.hpp
   friend class EventStore;        // db/event_store.hpp
   friend class MaterialStore;     // db/material_store.hpp
   friend class MeasurementStore;  // db/measurement_store.hpp

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calibrator/probe.hpp"
+#include "db/attempt_store.hpp"
 #include "db/event_store.hpp"
 #include "db/material_store.hpp"
 #include "db/store.hpp"
@@ -79,10 +80,12 @@ struct Service::State {
       : store(open_store(options)),
         worker_options{.workers = options.workers,
                        .program = options.program,
-                       .time_limit = options.evaluation_time_limit},
+                       .time_limit = options.evaluation_time_limit,
+                       .memory_limit = options.evaluation_memory_limit},
         clock(options.clock) {
     if (options.read_only) return;
     store.requeue_all();  // what ran when the last process ended runs no more
+    db::AttemptStore(store).lose_all(microseconds_now());
     if (!options.run_jobs) return;
     scheduler = std::make_unique<Scheduler>(
         [this](const Job& job, const std::stop_token& stop) { run_job(job, stop); });
@@ -583,6 +586,7 @@ bool Service::ready() {
 ServiceFigures Service::figures() const {
   return {.engine_version = std::string(engine::version()),
           .jobs = state_->store.count_by_state(),
+          .attempts = db::AttemptStore(state_->store).totals(),
           .store = db::figures(state_->store)};
 }
 

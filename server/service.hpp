@@ -42,8 +42,10 @@ struct ServiceOptions {
   /// answer on its standard output. Empty: evaluations run in this process (tests).
   std::filesystem::path program;
   double evaluation_time_limit = 3600.0;  ///< s of wall time
-  bool read_only = false;                 ///< look only: works while another process writes
-  bool run_jobs = false;                  ///< start the queued calibrations in the background
+  /// Bytes that the process of one evaluation may have; 0: any.
+  std::uint64_t evaluation_memory_limit = std::uint64_t{8} << 30U;
+  bool read_only = false;  ///< look only: works while another process writes
+  bool run_jobs = false;   ///< start the queued calibrations in the background
   /// Microseconds since 1970 UTC, for what the clock starts.
   std::function<std::int64_t()> clock = microseconds_now;
 };
@@ -65,7 +67,8 @@ struct DiagnosisEvents {
 /// For those who watch the service.
 struct ServiceFigures {
   std::string engine_version;
-  std::map<std::string, std::int64_t> jobs;  ///< calibrations by state
+  std::map<std::string, std::int64_t> jobs;      ///< calibrations by state
+  std::map<std::string, std::int64_t> attempts;  ///< at evaluations, by how they ended
   db::Figures store;
 };
 

@@ -37,6 +37,10 @@ void print_service(std::string& page, const ServiceFigures& figures) {
   for (const auto& [state, count] : figures.jobs) {
     page += "repose_calibrations{state=\"" + state + "\"} " + std::to_string(count) + "\n";
   }
+  describe(page, "repose_attempts_total", "counter", "Attempts at evaluations by how they ended.");
+  for (const auto& [end, count] : figures.attempts) {
+    page += "repose_attempts_total{end=\"" + end + "\"} " + std::to_string(count) + "\n";
+  }
   counter(page,
           "repose_evaluations_total",
           "Evaluations in the store.",

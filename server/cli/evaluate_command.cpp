@@ -1,11 +1,13 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <csignal>
 #include <exception>
 #include <iostream>
 #include <limits>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <stop_token>
 #include <sys/prctl.h>
@@ -22,7 +24,9 @@
 #include "server/cli/interrupt.hpp"
 #include "server/cli/reference_grain.hpp"
 #include "server/cli/text_table.hpp"
+#include "server/jobs/child.hpp"
 #include "server/jobs/team.hpp"
+#include "server/json/attempt_json.hpp"
 #include "server/json/evaluation_json.hpp"
 #include "server/json/place.hpp"
 #include "server/json/replicates_json.hpp"
@@ -282,15 +286,45 @@ int evaluate_command(const EvaluateCommand& command) {
   return exit_code::done;
 }
 
+namespace {
+
+/// Tells whoever asked that this process works: see server/jobs/child.hpp.
+class SignsOfLife {
+ public:
+  SignsOfLife() : thread_([](const std::stop_token& stop) { beat_until(stop); }) {}
+
+ private:
+  static void beat_until(const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any never;
+    std::unique_lock hold(mutex);
+    while (!stop.stop_requested()) {
+      std::cout << std::endl;
+      never.wait_for(hold, stop, std::chrono::duration<double>(beat), [] { return false; });
+    }
+  }
+
+  std::jthread thread_;
+};
+
+}  // namespace
+
 int answer_command() {
   // Whoever asked is gone: nobody will read the answer.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   ignore_interrupts();
   const auto text = read_text("-");
   if (!text) return report_error(text.error(), false);
-  const auto trial = parse_trial(*text);
-  if (!trial) return report_error({"the question cannot be read", trial.error()}, false);
-  std::cout << print_answer(engine::evaluate(*trial)) << "\n";
+  const auto question = parse_question(*text);
+  if (!question) return report_error({"the question cannot be read", question.error()}, false);
+  try {
+    std::optional<SignsOfLife> signs(std::in_place);
+    const std::string answer = print_answer(engine::evaluate(question->trial));
+    signs.reset();
+    std::cout << print_answer_to(*question, answer) << "\n";
+  } catch (const std::bad_alloc&) {
+    return out_of_memory_code;
+  }
   return exit_code::done;
 }
 

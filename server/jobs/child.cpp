@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
@@ -87,6 +88,27 @@ void give(int to, const std::string& text) {
   }
 }
 
+/// From outside: what is started may be any program. Shadow memory of a sanitizer passes any limit.
+void limit_memory([[maybe_unused]] pid_t child, [[maybe_unused]] std::uint64_t bytes) {
+#ifndef REPOSE_SANITIZED
+  if (bytes == 0) return;
+  const rlimit limit{bytes, bytes};
+  prlimit(child, RLIMIT_AS, &limit, nullptr);  // fails only where the child has ended already
+#endif
+}
+
+/// How a process ended that was not left to its end.
+std::string cut_off(ChildResult::End end, const ChildLimits& limits) {
+  using End = ChildResult::End;
+  if (end == End::cancelled) return "was asked to stop";
+  if (end == End::timed_out) {
+    return "ran past its time limit of " + std::to_string(limits.seconds) + " s";
+  }
+  if (end == End::silent)
+    return "gave no sign of life for " + std::to_string(limits.silence) + " s";
+  return "wrote without end";
+}
+
 void end_group(pid_t child) {
   // Stopped or deaf, the whole group ends: an evaluation has nothing to clean up.
   kill(-child, SIGKILL);
@@ -96,19 +118,22 @@ void end_group(pid_t child) {
 
 ChildResult run_child(const std::filesystem::path& program,
                       const std::string& input,
-                      double time_limit,
+                      const ChildLimits& limits,
                       const std::stop_token& stop) {
   Descriptor question_out, question_in, answer_out, answer_in;
   make_pipe(question_out, question_in);
   make_pipe(answer_out, answer_in);
-  give(question_in.get(), input);  // both ends are open here: no broken pipe
   const pid_t child = start(program, question_out.get(), answer_in.get());
+  limit_memory(child, limits.bytes);
+  // Not before the limit holds; and while both ends are open here: no broken pipe.
+  give(question_in.get(), input);
   question_out.reset();
   question_in.reset();
   answer_in.reset();
 
   ChildResult result;
-  const auto deadline = Clock::now() + std::chrono::duration<double>(time_limit);
+  const auto deadline = Clock::now() + std::chrono::duration<double>(limits.seconds);
+  auto heard = Clock::now();
   std::array<char, 16384> buffer{};
   int status = 0;
   bool ended = false;
@@ -120,12 +145,17 @@ ChildResult run_child(const std::filesystem::path& program,
     if (poll(&watched, 1, open ? look_up : 1) > 0) {
       const ssize_t count = read(answer_out.get(), buffer.data(), buffer.size());
       if (count > 0) result.output.append(buffer.data(), static_cast<std::size_t>(count));
+      if (count > 0) heard = Clock::now();
       open = count > 0 || (count < 0 && errno == EINTR);
     }
     if (!open) ended = waitpid(child, &status, WNOHANG) == child;
     if (ended) break;
+    const auto now = Clock::now();
+    if (now - heard >= std::chrono::duration<double>(limits.silence)) {
+      result.end = ChildResult::End::silent;
+    }
+    if (now >= deadline) result.end = ChildResult::End::timed_out;
     if (stop.stop_requested()) result.end = ChildResult::End::cancelled;
-    if (Clock::now() >= deadline) result.end = ChildResult::End::timed_out;
     constexpr std::size_t longest = 16U << 20U;  // bytes; an answer has some hundreds
     if (result.output.size() > longest) result.end = ChildResult::End::died;
     if (result.end != ChildResult::End::exited) {
@@ -135,16 +165,14 @@ ChildResult run_child(const std::filesystem::path& program,
   }
   while (!ended && waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (result.end == ChildResult::End::died) {
-    result.account = "wrote without end";
-  } else if (result.end != ChildResult::End::exited) {
-    result.account =
-        result.end == ChildResult::End::cancelled ? "was asked to stop" : "ran past its time limit";
+  if (result.end != ChildResult::End::exited) {
+    result.account = cut_off(result.end, limits);
   } else if (WIFSIGNALED(status)) {
     result.end = ChildResult::End::died;
     result.account = std::string("died by signal ") + strsignal(WTERMSIG(status));
   } else {
-    result.account = "ended with exit code " + std::to_string(WEXITSTATUS(status));
+    result.exit_code = WEXITSTATUS(status);
+    result.account = "ended with exit code " + std::to_string(result.exit_code);
   }
   return result;
 }

@@ -1,5 +1,8 @@
 /// run_child(): one evaluation in a process of its own, so that a crash, an endless loop or a flood
 /// of memory costs one evaluation.
+///
+/// The process reads a question to its end, and writes an answer. While it works it writes a line
+/// break every `beat` seconds, which JSON takes no notice of: one that falls silent is lost.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +12,30 @@
 
 namespace repose::server {
 
+inline constexpr double beat = 2.0;  ///< s of wall time
+/// With which a process says that it was given no more memory (ENOMEM).
+inline constexpr int out_of_memory_code = 12;
+
+/// What a process may take.
+struct ChildLimits {
+  double seconds = 3600.0;  ///< of wall time
+  double silence = 30.0;    ///< s of wall time without a sign of life
+  std::uint64_t bytes = 0;  ///< of address space; 0: any
+};
+
 struct ChildResult {
-  enum class End : std::uint8_t { exited, died, timed_out, cancelled };
+  enum class End : std::uint8_t { exited, died, timed_out, silent, cancelled };
   End end = End::exited;
   std::string output;
+  int exit_code = 0;    ///< of one that exited
   std::string account;  ///< how it ended, in words
 };
 
-/// Starts `program answer`, gives it `input` and reads its standard output until it ends,
-/// `time_limit` (s of wall time) has passed or a stop is asked for. Throws std::system_error where
-/// no process can be started.
+/// Starts `program answer`, gives it `input` and reads its standard output until it ends, passes a
+/// limit or a stop is asked for. Throws std::system_error where no process can be started.
 ChildResult run_child(const std::filesystem::path& program,
                       const std::string& input,
-                      double time_limit,
+                      const ChildLimits& limits,
                       const std::stop_token& stop);
 
 }  // namespace repose::server

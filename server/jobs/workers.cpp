@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "engine/evaluate.hpp"
-#include "server/jobs/child.hpp"
 #include "server/jobs/clock.hpp"
 #include "server/json/evaluation_json.hpp"
 
@@ -32,16 +31,12 @@ struct Workers::Task {
 namespace {
 
 /// A failure of the host, as an answer's document.
-std::string host_failure(const Trial& trial, FailureKind kind, const std::string& message) {
-  return print_answer({trial, Failure{kind, message, 0.0}, {}});
-}
-
-/// Answers that are not the engine's but the host's.
-bool is_of_the_host(const Evaluation& evaluation) {
-  const auto* failure = std::get_if<Failure>(&evaluation.outcome);
-  if (failure == nullptr) return false;
-  return failure->kind == FailureKind::cancelled || failure->kind == FailureKind::timed_out ||
-         failure->kind == FailureKind::crashed;
+std::string host_failure(const Trial& trial, const Attempts& attempts) {
+  using End = Attempted::End;
+  const FailureKind kind = attempts.end == End::cancelled   ? FailureKind::cancelled
+                           : attempts.end == End::timed_out ? FailureKind::timed_out
+                                                            : FailureKind::crashed;
+  return print_answer({trial, Failure{kind, "the evaluation " + attempts.account, 0.0}, {}});
 }
 
 bool is_a(FailureKind kind, const Evaluation& evaluation) {
@@ -59,7 +54,12 @@ std::string class_of(const engine::Experiment& experiment) {
 }  // namespace
 
 Workers::Workers(db::Store& store, const WorkerOptions& options)
-    : store_(store), options_(options) {
+    : store_(store),
+      options_(options),
+      executor_(options.program.empty() ? inline_executor()
+                                        : child_executor(options.program,
+                                                         {.seconds = options.time_limit,
+                                                          .bytes = options.memory_limit})) {
   if (options_.workers == 0) options_.workers = std::max(1U, std::thread::hardware_concurrency());
 }
 
@@ -116,53 +116,28 @@ void Workers::count(const std::vector<Task>& tasks) {
   }
 }
 
-/// Runs the trial wherever trials are run; the answer's document.
-std::string Workers::ask(const Trial& trial, const std::stop_token& stop) const {
-  if (stop.stop_requested()) return host_failure(trial, FailureKind::cancelled, "asked to stop");
-  if (options_.program.empty()) {
-    return print_answer(engine::evaluate(trial, {.stop = stop}));
-  }
-  std::string account;
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    const ChildResult child =
-        run_child(options_.program, print_trial(trial) + "\n", options_.time_limit, stop);
-    account = child.account;
-    using End = ChildResult::End;
-    if (child.end == End::cancelled) {
-      return host_failure(trial, FailureKind::cancelled, "asked to stop");
-    }
-    if (child.end == End::timed_out) {
-      return host_failure(
-          trial,
-          FailureKind::timed_out,
-          "the evaluation " + account + " of " + std::to_string(options_.time_limit) + " s");
-    }
-    if (child.end == End::exited) {
-      const Evaluation evaluation = parse_answer(trial, child.output);
-      if (!is_of_the_host(evaluation)) return print_answer(evaluation);
-    }
-  }
-  return host_failure(
-      trial, FailureKind::crashed, "the evaluation's process " + account + " without an answer");
-}
-
+/// Has the trial answered; a failure of the host is kept under a name of its own.
 void Workers::work(Task& task, const std::stop_token& stop) {
   const auto start = std::chrono::steady_clock::now();
-  task.answer = ask(*task.trial, stop);
+  const Attempts attempts = attempt(executor_, store_, *task.trial, task.key, options_.wait, stop);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   task.seconds = took.count();
   task.ended = microseconds_now();
-  const Evaluation evaluation = parse_answer(*task.trial, task.answer);
-  if (is_a(FailureKind::cancelled, evaluation)) return;
-  if (is_a(FailureKind::crashed, evaluation)) task.key = crashed_key(task.key);
-  if (is_a(FailureKind::timed_out, evaluation)) task.key = timed_out_key(task.key);
+  remember(task.trial->experiment, took.count());
+  using End = Attempted::End;
+  if (attempts.end == End::answered) {
+    look_up(task);  // with the store's word for what it took
+    return;
+  }
+  task.answer = host_failure(*task.trial, attempts);
+  if (attempts.end == End::cancelled) return;
+  task.key = attempts.end == End::timed_out ? timed_out_key(task.key) : crashed_key(task.key);
   store_.add_evaluation({.key = task.key,
                          .question = print_trial(*task.trial),
                          .answer = task.answer,
                          .seconds = task.seconds,
                          .engine_version = std::string(engine::version()),
                          .created_at = task.ended});
-  remember(task.trial->experiment, took.count());
 }
 
 std::vector<Evaluation> Workers::run(std::span<const Trial> trials,

@@ -18,13 +18,17 @@
 #include "calibrator/evaluator.hpp"
 #include "db/store.hpp"
 #include "engine/experiment.hpp"
+#include "server/jobs/executor.hpp"
 
 namespace repose::server {
 
 struct WorkerOptions {
   unsigned workers = 0;                ///< at once; 0: one per core
   std::filesystem::path program = {};  ///< empty: evaluations run on threads of this process
-  double time_limit = 3600.0;          ///< s of wall time for one evaluation
+  double time_limit = 3600.0;          ///< s of wall time for one attempt at an evaluation
+  /// Bytes that the process of one evaluation may have; 0: any.
+  std::uint64_t memory_limit = std::uint64_t{8} << 30U;
+  Wait wait = wait_for;  ///< before another attempt
 };
 
 class Workers {
@@ -35,10 +39,10 @@ class Workers {
 
   Workers(db::Store& store, const WorkerOptions& options);
 
-  /// The evaluations of a batch in its order. Equal trials run once. A trial whose process crashed
-  /// (twice), ran past the limit or was cancelled is a Failure of that kind. The first two are kept
-  /// under a name of their own, so that a replay meets them too; with another limit, a trial that
-  /// ran past it is run again, as is one that was cancelled.
+  /// The evaluations of a batch in its order. Equal trials run once. A trial whose attempts all
+  /// crashed, one that ran past the limit or was cancelled is a Failure of that kind. The first two
+  /// are kept under a name of their own, so that a replay meets them too; with another limit, a
+  /// trial that ran past it is run again, as is one that was cancelled.
   std::vector<engine::Evaluation> run(std::span<const engine::Trial> trials,
                                       const std::stop_token& stop,
                                       const TrialObserver& observer);
@@ -58,11 +62,11 @@ class Workers {
   std::vector<std::size_t> longest_first(const std::vector<Task>& tasks) const;
   void work(Task& task, const std::stop_token& stop);
   [[nodiscard]] std::string timed_out_key(const std::string& key) const;
-  [[nodiscard]] std::string ask(const engine::Trial& trial, const std::stop_token& stop) const;
   void remember(const engine::Experiment& experiment, double seconds);
 
   db::Store& store_;
   WorkerOptions options_;
+  Executor executor_;
   mutable std::mutex mutex_;
   std::map<std::string, double> seconds_;  ///< last wall time by experiment and fidelity
   std::vector<std::string> used_;
