@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "server/cli/commands.hpp"
+#include "server/cli/laboratory_options.hpp"
 
 namespace repose::server {
 
@@ -20,5 +21,23 @@ void add_export(CLI::App& app, ExportCommand& options, Work& work);
 void add_store(CLI::App& app, StoreCommand& options, Work& work);
 void add_schedule(CLI::App& app, ScheduleCommand& options, Work& work);
 void add_nightly(CLI::App& app, ScheduleCommand& options, Work& work);
+
+void add_calibrate(CLI::App& app, CalibrateCommand& options, Work& work);
+void add_missing_effect(CLI::App& app, MissingEffectCommand& options, Work& work);
+void add_lineage(CLI::App& app, LineageCommand& options, Work& work);
+void add_report(CLI::App& app, ReportCommand& options, Work& work);
+void add_list(CLI::App& app, ListCommand& options, Work& work);
+void add_show(CLI::App& app, ShowCommand& options, Work& work);
+
+void add_serve(CLI::App& app, ServeCommand& options, Work& work);
+void add_token(CLI::App& app, TokenCommand& options, Work& work);
+
+void add_bench(CLI::App& app,
+               BenchCommand& options,
+               BenchEffectsCommand& effects,
+               BenchCalibratorCommand& calibrator,
+               LaboratoryOptions& laboratory,
+               Work& work);
+void add_study(CLI::App& app, StudyCommand& options, Work& work);
 
 }  // namespace repose::server
