@@ -10,6 +10,7 @@
 #include "db/store.hpp"
 #include "server/access/secret.hpp"
 #include "server/api/conditional.hpp"
+#include "server/api/page_link.hpp"
 #include "server/api/problem.hpp"
 #include "server/jobs/clock.hpp"
 #include "server/json/reply_json.hpp"
@@ -67,6 +68,13 @@ void tag(const Request& request, Reply& reply) {
   reply.body.clear();
 }
 
+/// Adds the address of the page that follows.
+void link(const Route& route, const Request& request, Reply& reply) {
+  if (!reads(request) || reply.status != 200 || reply.stream) return;
+  const std::string address = next_page(route, request, reply.body);
+  if (!address.empty()) reply.headers.emplace_back("Link", "<" + address + ">; rel=\"next\"");
+}
+
 }  // namespace
 
 Reply Api::respond(Request request) {
@@ -77,6 +85,7 @@ Reply Api::respond(Request request) {
   Reply reply;
   try {
     reply = route ? answer(**route, request) : route.error();
+    if (route) link(**route, request, reply);
     tag(request, reply);
   } catch (const db::Error& error) {
     log_failure(request, id, error.what());

@@ -89,6 +89,20 @@ TEST_CASE("pages hold every evaluation once", "[end_to_end]") {
     } while (!next.is_null());
     CHECK(Json(items) == whole["items"]);
   }
+  // The same by following the links.
+  std::vector<Json> items;
+  for (std::string next = path + "/evaluations?limit=5"; !next.empty();) {
+    const httplib::Response response = api.get(next);
+    REQUIRE(response.status == 200);
+    const Json page = Json::parse(response.body);
+    for (const Json& item : page["items"]) items.push_back(item);
+    const std::string link = response.get_header_value("Link");
+    next.clear();
+    if (link.empty()) continue;
+    next = link.substr(1, link.find('>') - 1);
+    CHECK(link == "<" + next + ">; rel=\"next\"");
+  }
+  CHECK(Json(items) == whole["items"]);
 }
 
 TEST_CASE("a fit is still there after a restart", "[end_to_end]") {
