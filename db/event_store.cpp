@@ -36,4 +36,12 @@ std::int64_t EventStore::newest() const {
   return row.integer(0);
 }
 
+std::int64_t EventStore::drift_alarms() const {
+  const std::scoped_lock hold(store_.state_->mutex);
+  Statement row = store_.state_->connection.prepare(
+      "SELECT count(*) FROM event WHERE kind = 'night.drift'");  // as its index has it
+  row.step();
+  return row.integer(0);
+}
+
 }  // namespace repose::db

@@ -31,6 +31,8 @@ class EventStore {
                                                 int limit) const;
   /// The number of the last event; 0 where there is none.
   [[nodiscard]] std::int64_t newest() const;
+  /// How many nights have told of a quantity that drifts.
+  [[nodiscard]] std::int64_t drift_alarms() const;
 
  private:
   const Store& store_;

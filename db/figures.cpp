@@ -45,6 +45,16 @@ Figures figures(const Store& store) {
   return result;
 }
 
-void probe(Store& store) { Inspection::probe(store); }
+void probe(Store& store) {
+  constexpr std::uintmax_t room = 4U << 20U;  // bytes: what the log grows to before it is moved
+  std::error_code unknown;
+  const auto space = std::filesystem::space(store.file(), unknown);
+  if (!unknown && space.available < room) {
+    throw Error(0,
+                "the disk of " + store.file().string() + " has " +
+                    std::to_string(space.available >> 10U) + " KiB left: make room");
+  }
+  Inspection::probe(store);
+}
 
 }  // namespace repose::db

@@ -18,7 +18,7 @@ struct Figures {
 Figures figures(const Store& store);
 
 /// Writes and syncs a page that does not change. Throws db::Error where the store cannot be
-/// written.
+/// written, or has so little room that it soon could not be.
 void probe(Store& store);
 
 }  // namespace repose::db

@@ -125,6 +125,7 @@ class Store {
   friend class ReplyStore;        // db/reply_store.hpp
   friend struct Inspection;       // db/figures.cpp
   friend class ScheduleStore;     // db/schedule_store.hpp
+  friend class WebhookStore;      // db/webhook_store.hpp
   struct State;
   std::unique_ptr<State> state_;
 };

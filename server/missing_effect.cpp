@@ -186,6 +186,8 @@ bool run_diagnosis(db::Store& store,
   if (!record) return true;
   try {
     return weigh(store, options, *record, stop, events);
+  } catch (const db::Error&) {
+    throw;  // the store fails, not the diagnosis
   } catch (const std::exception& problem) {
     store.finish_diagnosis(id, "failed", {}, problem.what(), microseconds_now());
     return true;

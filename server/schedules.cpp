@@ -82,6 +82,23 @@ bool belongs(const ScheduleStore& schedules, std::int64_t schedule, std::int64_t
 
 }  // namespace
 
+std::vector<DriftFigure> drift_figures(const db::Store& store) {
+  constexpr int look_back = 30;  // nights, of which those without new measurements found nothing
+  const ScheduleStore schedules(store);
+  std::vector<DriftFigure> figures;
+  for (const auto& schedule : schedules.schedules()) {
+    for (const auto& night : schedules.nights(schedule.id, look_back, std::nullopt)) {
+      const auto followed = parse_followed(night.result.value_or(""));
+      if (followed.empty()) continue;
+      for (const Followed& quantity : followed) {
+        figures.push_back({schedule.id, quantity.name, quantity.drift.level, quantity.drift.limit});
+      }
+      break;
+    }
+  }
+  return figures;
+}
+
 Answer<std::string> add_schedule(db::Store& store, std::string_view document, std::int64_t now) {
   const auto read_one = read(store, document);
   if (!read_one) return Unexpected{read_one.error()};

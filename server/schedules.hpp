@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "db/store.hpp"
 #include "server/service.hpp"
@@ -32,6 +33,9 @@ Answer<std::string> nights(db::Store& store,
                            std::int64_t id,
                            int limit,
                            std::optional<std::int64_t> before);
+
+/// Where the charts of all schedules stand.
+std::vector<DriftFigure> drift_figures(const db::Store& store);
 
 /// {"items"}: which fit was in force from when on, newest first.
 Answer<std::string> promotions(db::Store& store, std::int64_t id);

@@ -1,25 +1,18 @@
 #include "server/service.hpp"
 
 #include <chrono>
-#include <exception>
 #include <iostream>
-#include <mutex>
-#include <set>
 #include <utility>
 
-#include "calibrator/probe.hpp"
 #include "db/attempt_store.hpp"
 #include "db/event_store.hpp"
 #include "db/material_store.hpp"
-#include "db/store.hpp"
 #include "engine/evaluate.hpp"
 #include "server/access/secret.hpp"
 #include "server/exports/export_fit.hpp"
 #include "server/jobs/clock.hpp"
-#include "server/jobs/scheduler.hpp"
 #include "server/jobs/workers.hpp"
 #include "server/json/calibration_json.hpp"
-#include "server/json/evaluation_json.hpp"
 #include "server/json/event_json.hpp"
 #include "server/json/fit_json.hpp"
 #include "server/json/job_json.hpp"
@@ -29,262 +22,25 @@
 #include "server/lineage.hpp"
 #include "server/measurements.hpp"
 #include "server/missing_effect.hpp"
-#include "server/nightly/continuation.hpp"
-#include "server/nightly/night_watch.hpp"
 #include "server/nightly/nights.hpp"
 #include "server/own_materials.hpp"
 #include "server/schedules.hpp"
+#include "server/service_state.hpp"
+#include "server/webhooks.hpp"
 
 namespace repose::server {
 
 using calibrator::Calibration;
-using calibrator::Fit;
 using engine::Unexpected;
-
-namespace {
-
-db::Store open_store(const ServiceOptions& options) {
-  const auto folder = options.database.parent_path();
-  if (!options.read_only && !folder.empty()) {
-    std::error_code problem;
-    std::filesystem::create_directories(folder, problem);
-    if (problem) {
-      throw db::Error(0, "cannot make the folder " + folder.string() + ": " + problem.message());
-    }
-  }
-  return {options.database, options.read_only ? db::Access::read : db::Access::write};
-}
-
-Refusal not_found(std::int64_t id) {
-  return {Refusal::Kind::not_found, "there is no calibration " + std::to_string(id), {}};
-}
-
-/// Lets a progress document through about once a second.
-class Pace {
- public:
-  bool due() {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::seconds(1)) return false;
-    last_ = now;
-    return true;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_{};
-};
-
-}  // namespace
-
-struct Service::State {
-  explicit State(const ServiceOptions& options)
-      : store(open_store(options)),
-        worker_options{.workers = options.workers,
-                       .program = options.program,
-                       .time_limit = options.evaluation_time_limit,
-                       .memory_limit = options.evaluation_memory_limit},
-        clock(options.clock) {
-    if (options.read_only) return;
-    store.requeue_all();  // what ran when the last process ended runs no more
-    db::AttemptStore(store).lose_all(microseconds_now());
-    if (!options.run_jobs) return;
-    scheduler = std::make_unique<Scheduler>(
-        [this](const Job& job, const std::stop_token& stop) { run_job(job, stop); });
-    for (const std::int64_t id : store.in_state("queued")) {
-      scheduler->submit({Job::Kind::calibration, id});
-    }
-    for (const std::int64_t id : store.queued_diagnoses()) {
-      scheduler->submit({Job::Kind::diagnosis, id});
-    }
-    watch = std::make_unique<NightWatch>([this](const std::stop_token& stop) { look(stop); });
-  }
-
-  void run_job(const Job& job, const std::stop_token& stop);
-  void run_calibration(std::int64_t id, const std::stop_token& stop);
-  void run_diagnosis(std::int64_t id, const std::stop_token& stop, const DiagnosisEvents& events);
-  void run(std::int64_t id,
-           const Calibration& calibration,
-           const std::stop_token& stop,
-           const CalibrationEvents& events);
-  bool refuse_unfelt(std::int64_t id,
-                     const Calibration& calibration,
-                     Workers& workers,
-                     const std::stop_token& stop);
-  void conclude(std::int64_t id, const Calibration& calibration, const Fit& fit);
-  void look(const std::stop_token& stop);
-  /// Takes a job that a user cancels from the queue, or asks it to stop where it runs.
-  Schedule::Cancelled cancel(const Job& job);
-  bool take_cancel(const Job& job);
-
-  db::Store store;
-  WorkerOptions worker_options;
-  std::function<std::int64_t()> clock;
-  std::mutex mutex;
-  std::optional<std::chrono::steady_clock::time_point> probed;  ///< when ready() looked last
-  bool writable = false;                                        ///< as it found then
-  std::mutex nights;                                            ///< held while nights are ended
-  std::set<Job> cancelled;               ///< running ones that a user has cancelled
-  std::unique_ptr<Scheduler> scheduler;  // its thread uses all of the above
-  std::unique_ptr<NightWatch> watch;     // last: its thread uses the scheduler too
-};
-
-/// What the clock asks for. A night that was cut off after its calibration is ended here too.
-void Service::State::look(const std::stop_token& stop) {
-  try {
-    for (const std::int64_t id : begin_nights(store, Begin::due, clock())) {
-      scheduler->submit({Job::Kind::calibration, id});
-    }
-    const std::unique_lock hold(nights, std::try_to_lock);
-    if (hold.owns_lock()) end_nights(store, worker_options, stop, clock());
-  } catch (const std::exception&) {
-    // The store fails (a full disk): the next look may find it well again.
-    return;
-  }
-}
-
-Schedule::Cancelled Service::State::cancel(const Job& job) {
-  {
-    // Before the job is asked to stop, so that it knows why.
-    const std::scoped_lock hold(mutex);
-    cancelled.insert(job);
-  }
-  const auto where = scheduler ? scheduler->cancel(job) : Schedule::Cancelled::unknown;
-  if (where != Schedule::Cancelled::running) take_cancel(job);
-  return where;
-}
-
-bool Service::State::take_cancel(const Job& job) {
-  const std::scoped_lock hold(mutex);
-  return cancelled.erase(job) > 0;
-}
-
-void Service::State::conclude(std::int64_t id, const Calibration& calibration, const Fit& fit) {
-  const bool failed = fit.stop == calibrator::StopReason::failed;
-  std::optional<std::string> error;
-  if (failed) error = fit.remarks.empty() ? "the calibration failed" : fit.remarks.front();
-  store.finish(id,
-               failed ? "failed" : "done",
-               print_fit(calibration, fit),
-               failed ? std::nullopt : std::optional(fit.misfit),
-               error,
-               microseconds_now());
-}
-
-/// Fails a calibration whose free parameters no measurement feels. True if it did.
-bool Service::State::refuse_unfelt(std::int64_t id,
-                                   const Calibration& calibration,
-                                   Workers& workers,
-                                   const std::stop_token& stop) {
-  const auto unfelt = calibrator::unfelt_parameters(
-      calibration,
-      [&](std::span<const engine::Trial> trials) { return workers.run(trials, stop, {}); });
-  if (unfelt.empty() || stop.stop_requested()) return false;
-  std::string names;
-  for (const std::size_t k : unfelt) {
-    names += (names.empty() ? "" : ", ") + engine::to_string(calibration.free[k].key);
-  }
-  take_cancel({Job::Kind::calibration, id});
-  store.finish(id,
-               "failed",
-               {},
-               {},
-               "no measurement feels " + names +
-                   ": from bound to bound the experiments come out equal to the last bit; fix " +
-                   (unfelt.size() == 1 ? "it" : "them") + " or add a measurement that does",
-               microseconds_now());
-  return true;
-}
-
-/// Runs a calibration that is in the state running, and leaves it in the state it has come to.
-void Service::State::run(std::int64_t id,
-                         const Calibration& calibration,
-                         const std::stop_token& stop,
-                         const CalibrationEvents& events) {
-  Workers workers(store, worker_options);
-  std::int64_t ordinal = 0;
-  bool interrupted = false;
-  Pace pace;
-  const calibrator::Evaluator evaluator = [&](std::span<const engine::Trial> trials) {
-    auto evaluations = workers.run(trials, stop, events.trial);
-    // An interrupted batch has gaps; it is noted when it has been run to its end.
-    if (!workers.interrupted()) store.note_used(id, ordinal, workers.used());
-    ordinal += static_cast<std::int64_t>(workers.used().size());
-    interrupted |= workers.interrupted();
-    return evaluations;
-  };
-  std::optional<calibrator::Progress> last;
-  const auto observer = [&](const calibrator::Progress& progress) {
-    last = progress;
-    if (pace.due()) store.set_progress(id, print_progress(calibration, progress));
-    if (events.progress) events.progress(progress);
-  };
-  try {
-    if (refuse_unfelt(id, calibration, workers, stop)) return;
-    const Fit fit = calibrate_from_store(
-        store, id, calibration, evaluator, {.stop = stop, .observer = observer, .meter = [&] {
-                                              return workers.spent();
-                                            }});
-    if (last) store.set_progress(id, print_progress(calibration, *last));
-    // A fit that lacks evaluations because of a stop is no fit.
-    interrupted |= stop.stop_requested() || fit.stop == calibrator::StopReason::cancelled;
-    if (!interrupted) conclude(id, calibration, fit);
-  } catch (const std::exception& problem) {
-    take_cancel({Job::Kind::calibration, id});
-    store.finish(id, "failed", {}, {}, problem.what(), microseconds_now());
-    return;
-  }
-  if (!interrupted) return;
-  if (take_cancel({Job::Kind::calibration, id})) {
-    store.finish(id, "cancelled", {}, {}, {}, microseconds_now());
-  } else {
-    store.requeue(id);  // the process ends, not the question
-  }
-}
-
-void Service::State::run_calibration(std::int64_t id, const std::stop_token& stop) {
-  const auto record = store.calibration(id);
-  if (!record || !store.start(id, microseconds_now())) return;
-  const auto calibration = parse_calibration(record->request);
-  if (!calibration) {
-    store.finish(id, "failed", {}, {}, calibration.error().front().message, microseconds_now());
-    return;
-  }
-  run(id, *calibration, stop, {});
-}
-
-/// Runs a diagnosis that is queued, and leaves it in the state it has come to.
-void Service::State::run_diagnosis(std::int64_t id,
-                                   const std::stop_token& stop,
-                                   const DiagnosisEvents& events) {
-  if (!store.start_diagnosis(id)) return;
-  const bool ended = server::run_diagnosis(store, worker_options, id, stop, events);
-  const bool unwanted = take_cancel({Job::Kind::diagnosis, id});
-  if (ended) return;
-  if (unwanted) {
-    store.finish_diagnosis(id, "cancelled", {}, {}, microseconds_now());
-  } else {
-    store.requeue_diagnosis(id);  // the process ends, not the question
-  }
-}
-
-void Service::State::run_job(const Job& job, const std::stop_token& stop) {
-  try {
-    if (job.kind == Job::Kind::calibration) {
-      run_calibration(job.id, stop);
-    } else {
-      run_diagnosis(job.id, stop, {});
-    }
-    const std::scoped_lock hold(nights);
-    end_nights(store, worker_options, stop, clock());
-  } catch (const std::exception&) {
-    // The store itself fails (a full disk): the row stays as it is, and the next start takes it up.
-    return;
-  }
-}
 
 Service::Service(const ServiceOptions& options) : state_(std::make_unique<State>(options)) {}
 Service::~Service() = default;
 
 namespace {
+
+Refusal not_found(std::int64_t id) {
+  return {Refusal::Kind::not_found, "there is no calibration " + std::to_string(id), {}};
+}
 
 Refusal invalid(const std::string& what, const Problems& problems) {
   return {Refusal::Kind::invalid,
@@ -442,6 +198,24 @@ Answer<std::string> Service::export_fit(std::int64_t id, std::string_view format
   return server::export_fit(state_->store, id, format);
 }
 
+Answer<std::string> Service::add_webhook(std::string_view content) {
+  return server::add_webhook(state_->store, content, state_->webhook_hosts);
+}
+
+Answer<std::string> Service::replace_webhook(std::int64_t id, std::string_view content) {
+  return server::replace_webhook(state_->store, id, content, state_->webhook_hosts);
+}
+
+Answer<std::string> Service::remove_webhook(std::int64_t id) {
+  return server::remove_webhook(state_->store, id);
+}
+
+Answer<std::string> Service::webhook(std::int64_t id) const {
+  return server::webhook(state_->store, id);
+}
+
+std::string Service::webhooks() const { return server::webhooks(state_->store); }
+
 Answer<std::string> Service::add_schedule(std::string_view document) {
   return server::add_schedule(state_->store, document, state_->clock());
 }
@@ -587,7 +361,10 @@ ServiceFigures Service::figures() const {
   return {.engine_version = std::string(engine::version()),
           .jobs = state_->store.count_by_state(),
           .attempts = db::AttemptStore(state_->store).totals(),
-          .store = db::figures(state_->store)};
+          .store = db::figures(state_->store),
+          .webhooks = db::WebhookStore(state_->store).figures(),
+          .drift_alarms = db::EventStore(state_->store).drift_alarms(),
+          .drift = drift_figures(state_->store)};
 }
 
 std::string Service::health() const {

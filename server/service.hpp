@@ -11,12 +11,14 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "calibrator/calibrate.hpp"
 #include "calibrator/diagnosis/diagnosis.hpp"
 #include "db/figures.hpp"
 #include "db/measurement_store.hpp"
 #include "db/reply_store.hpp"
+#include "db/webhook_store.hpp"
 #include "engine/result.hpp"
 #include "server/jobs/clock.hpp"
 #include "server/json/problem.hpp"
@@ -45,7 +47,9 @@ struct ServiceOptions {
   /// Bytes that the process of one evaluation may have; 0: any.
   std::uint64_t evaluation_memory_limit = std::uint64_t{8} << 30U;
   bool read_only = false;  ///< look only: works while another process writes
-  bool run_jobs = false;   ///< start the queued calibrations in the background
+  bool run_jobs = false;   ///< start the queued calibrations in the background, and tell webhooks
+  std::vector<std::string> webhook_hosts =
+      {};  ///< that are not public, and may be told all the same
   /// Microseconds since 1970 UTC, for what the clock starts.
   std::function<std::int64_t()> clock = microseconds_now;
 };
@@ -64,12 +68,23 @@ struct DiagnosisEvents {
   std::function<void(std::size_t done, std::size_t all, bool stored)> trial;
 };
 
+/// Where the control chart of a quantity stands after its schedule's last night.
+struct DriftFigure {
+  std::int64_t schedule = 0;
+  std::string quantity;
+  double level = 0.0;  ///< see server/nightly/drift.hpp
+  double limit = 0.0;
+};
+
 /// For those who watch the service.
 struct ServiceFigures {
   std::string engine_version;
   std::map<std::string, std::int64_t> jobs;      ///< calibrations by state
   std::map<std::string, std::int64_t> attempts;  ///< at evaluations, by how they ended
   db::Figures store;
+  db::WebhookFigures webhooks;
+  std::int64_t drift_alarms = 0;
+  std::vector<DriftFigure> drift;
 };
 
 class Service {
@@ -162,6 +177,13 @@ class Service {
 
   /// The fit of a finished calibration for other programs; `format` is one of export_format_names.
   [[nodiscard]] Answer<std::string> export_fit(std::int64_t id, std::string_view format) const;
+
+  // Addresses that are told of events: see server/webhooks.hpp.
+  Answer<std::string> add_webhook(std::string_view content);
+  Answer<std::string> replace_webhook(std::int64_t id, std::string_view content);
+  Answer<std::string> remove_webhook(std::int64_t id);
+  [[nodiscard]] Answer<std::string> webhook(std::int64_t id) const;
+  [[nodiscard]] std::string webhooks() const;
 
   // Schedules: see server/schedules.hpp, and server/nightly/ for what a night does.
   Answer<std::string> add_schedule(std::string_view document);

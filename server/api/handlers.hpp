@@ -45,6 +45,12 @@ Reply list_nights(Service& service, const Request& request);
 Reply list_promotions(Service& service, const Request& request);
 Reply promote(Service& service, const Request& request);
 
+Reply add_webhook(Service& service, const Request& request);
+Reply list_webhooks(Service& service, const Request& request);
+Reply get_webhook(Service& service, const Request& request);
+Reply replace_webhook(Service& service, const Request& request);
+Reply remove_webhook(Service& service, const Request& request);
+
 Reply get_health(Service& service, const Request& request);
 Reply get_readiness(Service& service, const Request& request);
 Reply get_metrics(Service& service, const Request& request);

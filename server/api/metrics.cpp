@@ -61,6 +61,53 @@ void print_service(std::string& page, const ServiceFigures& figures) {
         static_cast<double>(figures.store.log_bytes));
 }
 
+/// A value of a label: what a user has named may hold anything.
+std::string label(std::string_view text) {
+  std::string result;
+  for (const char letter : text) {
+    if (letter == '\n') {
+      result += "\\n";
+      continue;
+    }
+    if (letter == '"' || letter == '\\') result += '\\';
+    result += letter;
+  }
+  return result;
+}
+
+void print_drift(std::string& page, const ServiceFigures& figures) {
+  counter(page,
+          "repose_drift_alarms_total",
+          "Nights that told of a quantity that drifts.",
+          static_cast<double>(figures.drift_alarms));
+  const auto print = [&](std::string_view name, std::string_view what, double DriftFigure::*value) {
+    describe(page, name, "gauge", what);
+    for (const DriftFigure& figure : figures.drift) {
+      page.append(name).append("{schedule=\"" + std::to_string(figure.schedule) + "\",quantity=\"" +
+                               label(figure.quantity) + "\"} " + number(figure.*value) + "\n");
+    }
+  };
+  print("repose_drift_level", "Of each quantity's control chart.", &DriftFigure::level);
+  print("repose_drift_limit",
+        "Of that level, from zero: beyond it is an alarm.",
+        &DriftFigure::limit);
+}
+
+void print_webhooks(std::string& page, const db::WebhookFigures& figures) {
+  describe(page, "repose_webhooks", "gauge", "Webhooks by state.");
+  for (const auto& [state, count] : figures.states) {
+    page += "repose_webhooks{state=\"" + state + "\"} " + std::to_string(count) + "\n";
+  }
+  gauge(page,
+        "repose_webhook_deliveries",
+        "Events that have arrived, of the webhooks there are.",
+        static_cast<double>(figures.delivered));
+  gauge(page,
+        "repose_webhook_failures",
+        "Attempts that have failed, of the webhooks there are.",
+        static_cast<double>(figures.failed));
+}
+
 void print_sockets(std::string& page, const TransportFigures& sockets) {
   gauge(page, "repose_connections", "Open connections.", static_cast<double>(sockets.connections));
   gauge(page, "repose_event_streams", "Open event streams.", static_cast<double>(sockets.streams));
@@ -87,6 +134,8 @@ void Metrics::count(std::string_view method, std::string_view pattern, int statu
 std::string Metrics::print(const ServiceFigures& service, const TransportFigures& sockets) const {
   std::string page;
   print_service(page, service);
+  print_drift(page, service);
+  print_webhooks(page, service.webhooks);
   print_sockets(page, sockets);
   const std::scoped_lock hold(mutex_);
   describe(page, "repose_requests_total", "counter", "Requests by route and status.");

@@ -47,7 +47,7 @@ constexpr std::string_view json = "application/json", stream = "text/event-strea
                            table_form = "text/csv";
 
 // clang-format off
-constexpr std::array<Route, 38> table{{
+constexpr std::array<Route, 43> table{{
     {"POST", "/v1/calibrations", "submitCalibration", "Queue a calibration.",
      "submission", 202, "calibration_document", {}, handlers::submit_calibration},
     {"GET", "/v1/calibrations", "listCalibrations", "List calibrations, newest first.",
@@ -114,6 +114,16 @@ constexpr std::array<Route, 38> table{{
      "", 200, "promotion_list", {}, handlers::list_promotions},
     {"POST", "/v1/schedules/{id}/promotions", "promote", "Put a fit of the schedule in force by hand: a candidate, or an earlier one.",
      "promotion", 200, "schedule_document", {}, handlers::promote},
+    {"POST", "/v1/webhooks", "addWebhook", "Have an address told of events; the answer shows the secret, this once.",
+     "webhook", 201, "webhook_document", {}, handlers::add_webhook, json, Scope::admin},
+    {"GET", "/v1/webhooks", "listWebhooks", "List the addresses that are told.",
+     "", 200, "webhook_list", {}, handlers::list_webhooks, json, Scope::admin},
+    {"GET", "/v1/webhooks/{id}", "getWebhook", "Get a webhook: what has arrived, what failed last, when it is tried again.",
+     "", 200, "webhook_document", {}, handlers::get_webhook, json, Scope::admin},
+    {"PUT", "/v1/webhooks/{id}", "replaceWebhook", "Change a webhook, or put a parked one in force again where it was.",
+     "webhook", 200, "webhook_document", {}, handlers::replace_webhook, json, Scope::admin},
+    {"DELETE", "/v1/webhooks/{id}", "removeWebhook", "Tell that address nothing more.",
+     "", 200, "webhook_document", {}, handlers::remove_webhook, json, Scope::admin},
     {"GET", "/v1/openapi.json", "getDescription", "Get this description.",
      "", 200, "", {}, handlers::get_openapi},
     {"GET", "/healthz", "getHealth", "See whether the service can work.",

@@ -133,9 +133,12 @@ int show_command(const ShowCommand& command);
 struct ServeCommand {
   std::string host = "127.0.0.1";
   int port = 8080;
-  std::vector<std::string> names;  ///< of this host, beside `host`, as requests may call it
+  std::vector<std::string> names;          ///< of this host, beside `host`, as requests may call it
+  std::vector<std::string> webhook_hosts;  ///< that are not public, and may be told all the same
   std::filesystem::path database;
   unsigned workers = 0;
+  double time_limit = 3600.0;  ///< s of wall time for one attempt at an evaluation
+  double memory_limit = 8.0;   ///< GiB for its process
 };
 int serve_command(const ServeCommand& command);
 

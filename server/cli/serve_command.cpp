@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <iostream>
 #include <stop_token>
 #include <string_view>
@@ -27,6 +28,9 @@ int serve_command(const ServeCommand& command) {
   options.workers = command.workers;
   options.program = own_program();
   options.run_jobs = true;
+  options.webhook_hosts = command.webhook_hosts;
+  options.evaluation_time_limit = command.time_limit;
+  options.evaluation_memory_limit = static_cast<std::uint64_t>(command.memory_limit * (1U << 30U));
   Tokens tokens(Tokens::file_for(command.database));
   const bool open = tokens.all().empty();
   if (open && !is_loopback(command.host)) {

@@ -17,6 +17,21 @@ void add_serve(CLI::App& app, ServeCommand& options, Work& work) {
   add_database(command, options.database);
   command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
       ->check(CLI::Range(1, 4096));
+  command
+      .add_option("--webhook-host",
+                  options.webhook_hosts,
+                  "A host that is not public, and that webhooks may lead to all the same")
+      ->type_name("HOST")
+      ->expected(1)
+      ->take_all();
+  command
+      .add_option("--time-limit", options.time_limit, "Seconds for one attempt at an evaluation")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 1e7));
+  command
+      .add_option("--memory-limit", options.memory_limit, "GiB for the process of an evaluation")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 1e4));
   command.callback([&] {
     work = [&] {
       if (options.database.empty()) options.database = default_database();

@@ -4,9 +4,10 @@
 
 namespace repose::server {
 
-void Schedule::submit(Job job) {
-  if (running_ == job || std::ranges::find(waiting_, job) != waiting_.end()) return;
+bool Schedule::submit(Job job) {
+  if (running_ == job || std::ranges::find(waiting_, job) != waiting_.end()) return false;
   waiting_.push_back(job);
+  return true;
 }
 
 std::optional<Job> Schedule::next() {

@@ -19,8 +19,8 @@ struct Job {
 
 class Schedule {
  public:
-  /// Puts a job at the end of the queue; one that waits or runs already stays where it is.
-  void submit(Job job);
+  /// Puts a job at the end of the queue; false where it waits or runs already: it stays there.
+  bool submit(Job job);
   /// The next one to run, which runs from now on; none while one runs.
   std::optional<Job> next();
   /// The running one has ended.

@@ -13,12 +13,14 @@ Scheduler::~Scheduler() {
   running_.request_stop();
 }
 
-void Scheduler::submit(Job job) {
+bool Scheduler::submit(Job job) {
+  bool is_new = false;
   {
     const std::scoped_lock hold(mutex_);
-    schedule_.submit(job);
+    is_new = schedule_.submit(job);
   }
   changed_.notify_all();
+  return is_new;
 }
 
 Schedule::Cancelled Scheduler::cancel(Job job) {

@@ -22,7 +22,7 @@ class Scheduler {
   Scheduler(const Scheduler&) = delete;
   Scheduler& operator=(const Scheduler&) = delete;
 
-  void submit(Job job);
+  bool submit(Job job);  ///< as Schedule's
   Schedule::Cancelled cancel(Job job);
 
  private:

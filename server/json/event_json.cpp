@@ -40,6 +40,8 @@ std::string print_events(const std::vector<db::EventRecord>& events, int limit) 
   return to_text(json);
 }
 
+std::string print_event_data(const db::EventRecord& event) { return to_text(data_of(event)); }
+
 std::string print_event_stream(const std::vector<db::EventRecord>& events) {
   std::string text;
   for (const auto& event : events) {

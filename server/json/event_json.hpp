@@ -12,6 +12,9 @@ namespace repose::server {
 std::string print_events(const std::vector<db::EventRecord>& events, int limit);
 
 /// id, event and data of each.
+/// What an event says beside its number and kind: an object.
+std::string print_event_data(const db::EventRecord& event);
+
 std::string print_event_stream(const std::vector<db::EventRecord>& events);
 
 }  // namespace repose::server

@@ -75,6 +75,7 @@ const std::vector<Library> libraries{
     {"nlohmann/", {"server/json/", "tests/"}},
     {"openssl/", {"server/access/secret.cpp"}},
     {"png", {"server/report/image.cpp"}},
+    {"curl/", {"server/webhooks/post.cpp"}},
     {"date/", {"server/nightly/time_zone.cpp"}},
     {"CLI/", {"server/cli"}},
     {"catch2/", {"tests/"}},

@@ -87,6 +87,7 @@ class Api {
     options.database = folder / "repose.db";
     options.workers = 2;
     options.run_jobs = true;
+    options.webhook_hosts = {"127.0.0.1"};
     return options;
   }
   static httplib::Response checked(const httplib::Result& result) {

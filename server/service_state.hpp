@@ -1,0 +1,66 @@
+/// The inside of the service: its store, and what runs in the background.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "calibrator/calibration.hpp"
+#include "calibrator/fit.hpp"
+#include "db/store.hpp"
+#include "server/jobs/scheduler.hpp"
+#include "server/jobs/watch.hpp"
+#include "server/jobs/workers.hpp"
+#include "server/service.hpp"
+#include "server/webhooks/post.hpp"
+
+namespace repose::server {
+
+struct Service::State {
+  explicit State(const ServiceOptions& options);
+
+  void run_job(const Job& job, const std::stop_token& stop);
+  void run_calibration(std::int64_t id, const std::stop_token& stop);
+  void run_diagnosis(std::int64_t id, const std::stop_token& stop, const DiagnosisEvents& events);
+  void run(std::int64_t id,
+           const calibrator::Calibration& calibration,
+           const std::stop_token& stop,
+           const CalibrationEvents& events);
+  bool refuse_unfelt(std::int64_t id,
+                     const calibrator::Calibration& calibration,
+                     Workers& workers,
+                     const std::stop_token& stop);
+  void conclude(std::int64_t id,
+                const calibrator::Calibration& calibration,
+                const calibrator::Fit& fit);
+  void look_for_nights(const std::stop_token& stop);
+  void run_errands(const std::stop_token& stop);
+  void take_up_stranded();
+  /// Takes a job that a user cancels from the queue, or asks it to stop where it runs.
+  Schedule::Cancelled cancel(const Job& job);
+  bool take_cancel(const Job& job);
+
+  db::Store store;
+  WorkerOptions worker_options;
+  std::function<std::int64_t()> clock;
+  std::vector<std::string> webhook_hosts;
+  Post post;
+  std::mutex mutex;
+  std::optional<std::chrono::steady_clock::time_point> probed;  ///< when ready() looked last
+  bool writable = false;                                        ///< as it found then
+  std::mutex nights;                                            ///< held while nights are ended
+  std::set<Job> cancelled;               ///< running ones that a user has cancelled
+  std::set<Job> stranded;                ///< that the store failed in the middle of
+  std::unique_ptr<Scheduler> scheduler;  // its thread uses all of the above
+  std::optional<Watch> night_watch;      // their threads use the scheduler too
+  std::optional<Watch> errands;
+};
+
+}  // namespace repose::server
