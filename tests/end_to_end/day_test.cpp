@@ -1,0 +1,13 @@
+// The transcript of a user's day is still what happens.
+#include <cstdlib>
+
+#include <catch2/catch.hpp>
+
+TEST_CASE("a user's day goes as its transcript expects", "[end_to_end][slow]") {
+  if (std::system("command -v curl > /dev/null") != 0) {
+    WARN("curl is not installed: not tried");
+    return;
+  }
+  CHECK(std::system("'" REPOSE_SOURCE_DIR "/tests/end_to_end/day.sh' '" REPOSE_PROGRAM
+                    "' > /dev/null") == 0);
+}
