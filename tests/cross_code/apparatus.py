@@ -13,7 +13,7 @@ from walls import GRAN, disc, lying, meshes, plate, rain, region, tube
 STEP = time_step(SOFT)
 G = 9.81  # m/s2
 ROUGH = ('variable rough string "granular hertz/material ${wallyoung} 0.4811323444 0.25 damping '
-         'tsuji tangential mindlin ${wallshear} ${tangent} 0.45 rolling sds ${roll} 0.0 0.05"\n')
+         'tsuji tangential mindlin ${wallshear} ${tangent} 0.45 rolling sds ${roll} 0.0 ${rolling}"\n')
 
 
 def steps(seconds):
@@ -25,6 +25,7 @@ class Apparatus:
 
     boundary = "f f f"
     skins = {"liggghts": 0.0015, "lammps": 0.0015}  # m
+    rolling = 0.05
     frame_interval = None  # s, of repose's frames that are read again; None: the last one only
 
     def __init__(self, settings, seed):
@@ -45,7 +46,8 @@ class Apparatus:
         return {"boundary": self.boundary, "space": f"read_data {code}.data", "scene": scene}
 
     def variables(self, code):
-        return {"modulus": SOFT, "dt": repr(STEP), "skin": self.skins[code]}
+        return {"modulus": SOFT, "dt": repr(STEP), "skin": self.skins[code],
+                "rolling": self.rolling}
 
     def struck_off(self, level):
         return (f"run {steps(self.settling)}\n"
