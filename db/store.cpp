@@ -1,5 +1,7 @@
 #include "db/store.hpp"
 
+#include <limits>
+
 #include "db/migrate.hpp"
 #include "db/store_state.hpp"
 
@@ -130,8 +132,9 @@ std::vector<CalibrationRecord> Store::calibrations(int limit,
                                                    std::optional<std::int64_t> before) const {
   const std::scoped_lock hold(state_->mutex);
   Statement row = state_->connection.prepare(
-      select_calibration(false, "WHERE ?1 IS NULL OR id < ?1 ORDER BY id DESC LIMIT ?2"));
-  row.bind(before).bind(static_cast<std::int64_t>(limit));
+      select_calibration(false, "WHERE id < ?1 ORDER BY id DESC LIMIT ?2"));
+  row.bind(before.value_or(std::numeric_limits<std::int64_t>::max()))
+      .bind(static_cast<std::int64_t>(limit));
   std::vector<CalibrationRecord> records;
   while (row.step()) records.push_back(without_documents(row));
   return records;
@@ -312,8 +315,8 @@ std::vector<UsedEvaluation> Store::used(std::int64_t calibration,
   Statement row = state_->connection.prepare(
       "SELECT u.ordinal, e.key, e.question, e.answer, e.seconds, e.engine_version, e.created_at "
       "FROM calibration_evaluation u JOIN evaluation e ON e.key = u.key "
-      "WHERE u.calibration_id = ?1 AND (?2 IS NULL OR u.ordinal > ?2) ORDER BY u.ordinal LIMIT ?3");
-  row.bind(calibration).bind(after).bind(static_cast<std::int64_t>(limit));
+      "WHERE u.calibration_id = ?1 AND u.ordinal > ?2 ORDER BY u.ordinal LIMIT ?3");
+  row.bind(calibration).bind(after.value_or(-1)).bind(static_cast<std::int64_t>(limit));
   std::vector<UsedEvaluation> result;
   while (row.step()) result.push_back({row.integer(0), evaluation_of(row, 1)});
   return result;

@@ -7,6 +7,7 @@ already large. Prints figures; nothing here passes or fails.
 import argparse
 import http.client
 import json
+import os
 import pathlib
 import random
 import re
@@ -53,6 +54,16 @@ class Service:
         """Resident, MiB."""
         text = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
         return int(re.search(r"VmRSS:\s+(\d+)", text).group(1)) / 1024
+
+    def processor_seconds(self):
+        fields = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def worked_out(self):
+        """Answers worked out within each time, s: without the wait for a processor or the client."""
+        page = self.get("/metrics")[1].decode()
+        return {float(bound): int(count) for bound, count in
+                re.findall(r'repose_request_seconds_bucket\{le="([^"]+)"\} (\d+)', page)}
 
     def stop(self):
         self.process.terminate()
@@ -103,6 +114,8 @@ def pace(service, rate, seconds, ask, threads):
 
 
 def summary(name, rate, times, failures):
+    if not times:
+        return
     times = sorted(times)
     at = lambda share: times[min(len(times) - 1, int(share * len(times)))]
     print(f"{name:12} {rate:4}/s  {len(times):6} done  {failures[0]:3} failed   "
@@ -167,12 +180,21 @@ def main():
         time.sleep(0.05)
 
     memory = service.memory()
+    before, used = service.worked_out(), service.processor_seconds()
     readers = pace(service, options.reads, options.seconds, read, 32)
     writers = pace(service, options.submits, options.seconds, submit, 8)
     for worker in readers[0] + writers[0]:
         worker.join()
     summary("reads", options.reads, *readers[1:])
     summary("submissions", options.submits, *writers[1:])
+    worked_out = {bound: count - before[bound] for bound, count in service.worked_out().items()}
+    all_answers = worked_out[float("inf")]  # of all routes, these figures' own among them
+    for share in (0.5, 0.99):
+        bound = min(b for b, count in worked_out.items() if count >= share * all_answers)
+        print(f"in service   {100 * share:.0f} % of {all_answers} answers worked out within "
+              f"{1000 * bound:g} ms")
+    print(f"processor    {service.processor_seconds() - used:.1f} s by the service in "
+          f"{options.seconds:.0f} s; load average {os.getloadavg()[0]:.1f}")
     print(f"streams      {options.streams} open, {min(events)} to {max(events)} events on each")
     print(f"memory       {memory:.0f} MiB before, {service.memory():.0f} MiB after")
     service.stop()
