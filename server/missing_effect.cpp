@@ -93,6 +93,7 @@ std::vector<engine::Evaluation> evaluations_of(const std::vector<db::UsedEvaluat
 /// Why a model cannot be extended by that.
 Refusal no_extension(const std::vector<calibrator::Suspect>& suspects, const std::string& effect) {
   std::vector<std::string> names;
+  names.reserve(suspects.size());
   for (const calibrator::Suspect& suspect : suspects) names.push_back(suspect.name);
   if (engine::find_effect(effect) != nullptr) {
     return refusal(
