@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 
@@ -10,6 +9,7 @@
 
 #include "calibrator/diagnosis/chi_squared.hpp"
 #include "calibrator/misfit.hpp"
+#include "calibrator/phrase.hpp"
 #include "engine/catalogue.hpp"
 
 namespace repose::calibrator {
@@ -18,20 +18,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double remarkable = 2.0;  // standard errors
-
-/// So many figures, but never fewer than the digits before the point.
-std::string number(double value, int figures = 2) {
-  char text[32];
-  const bool large = std::abs(value) >= std::pow(10.0, figures);
-  const int length = large ? std::snprintf(text, sizeof text, "%.0f", value)
-                           : std::snprintf(text, sizeof text, "%.*g", figures, value);
-  return {text, static_cast<std::size_t>(length)};
-}
-
-std::string quantity(double value, const engine::Unit& unit, int figures = 2) {
-  std::string text = number(value / unit.factor, figures);
-  return unit.symbol == "1" ? text : text + " " + std::string(unit.symbol);
-}
 
 ComparedMeasurement row_of(const Measurement& measurement,
                            const Prediction& prediction,
@@ -154,7 +140,7 @@ std::string spoken(std::string name) {
 std::string miss_of(const Measurement& measurement,
                     double difference,
                     const std::vector<std::string>& conditions) {
-  std::string text = quantity(std::abs(difference), measurement.unit) +
+  std::string text = quantity(std::abs(difference), measurement.unit, 2) +
                      (difference > 0.0 ? " too high" : " too low");
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     const auto* info = setting_info(measurement, conditions[i]);
@@ -194,7 +180,7 @@ std::string whole_sentence(const Comparison& comparison) {
     return "As many directions were learnt as measurements fitted: that the model fits says "
            "nothing.";
   }
-  const std::string chance = " (p " + number(comparison.p) + ")";
+  const std::string chance = " (p " + number(comparison.p, 2) + ")";
   if (comparison.p >= unlikely) {
     return comparison.sentences.empty()
                ? "The model fits: no measurement is off by more than two standard errors" + chance +

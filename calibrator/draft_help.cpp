@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
+#include "calibrator/phrase.hpp"
 #include "calibrator/remarks.hpp"
 
 namespace repose::calibrator {
@@ -49,12 +49,6 @@ DraftHelp regression(const std::vector<std::pair<double, double>>& points, doubl
   return help;
 }
 
-std::string digits(double value) {
-  char text[32];
-  const int length = std::snprintf(text, sizeof text, "%.2g", value);
-  return {text, static_cast<std::size_t>(length)};
-}
-
 }  // namespace
 
 double DraftHelp::variance(double draft) const {
@@ -94,8 +88,8 @@ std::vector<std::string> draft_remarks(const Ledger& ledger) {
   for (std::size_t j = 0; j < all.size(); ++j) {
     const DraftHelp& help = all[j];
     const std::string evidence = std::to_string(help.pairs) +
-                                 " paired runs give R2 = " + digits(help.r_squared) + " at " +
-                                 digits(help.cost) + " of the cost";
+                                 " paired runs give R2 = " + number(help.r_squared, 2) + " at " +
+                                 number(help.cost, 2) + " of the cost";
     const std::string name = measurement_name(ledger.calibration().measurements[j]);
     sentences.push_back(help.proven ? "Draft runs helped with " + name + ": " + evidence + "."
                                     : "Draft runs were left out of " + name + ": " + evidence +

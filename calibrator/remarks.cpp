@@ -3,25 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <utility>
 
 #include "calibrator/draft_help.hpp"
+#include "calibrator/phrase.hpp"
 
 namespace repose::calibrator {
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  const int length = std::snprintf(text, sizeof text, "%.3g", value);
-  return {text, static_cast<std::size_t>(length)};
-}
+constexpr int figures = 3;
 
-/// An SI value in the unit of its measurement.
 std::string quantity(double value, const Measurement& measurement) {
-  std::string text = number(value / measurement.unit.factor);
-  if (measurement.unit.symbol != "1") text += " " + std::string(measurement.unit.symbol);
-  return text;
+  return calibrator::quantity(value, measurement.unit, figures);
 }
 
 /// "a", "a and b", "a, b and c".
@@ -32,10 +25,6 @@ std::string enumerate(const std::vector<std::string>& names) {
     text += names[i];
   }
   return text;
-}
-
-std::string plural(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
 using Sentences = std::vector<std::string>;
@@ -51,7 +40,7 @@ void on_identification(const Calibration& calibration, const Fit& fit, Sentences
     }
   }
   std::string text = "The data determine " + std::to_string(learnt) + " of " +
-                     plural(fit.directions.size(), "direction");
+                     counted(fit.directions.size(), "direction");
   if (!open.empty()) {
     text += "; " + enumerate(open) + (open.size() == 1 ? " is" : " are") +
             " not determined: any value within the bounds fits equally well with the others "
@@ -62,8 +51,8 @@ void on_identification(const Calibration& calibration, const Fit& fit, Sentences
   const auto fitted = static_cast<std::size_t>(
       std::ranges::count(calibration.measurements, Role::fit, &Measurement::role));
   if (fitted <= learnt) {
-    out.push_back("With " + plural(fitted, "fitted measurement") + " for " +
-                  plural(calibration.free.size(), "free parameter") +
+    out.push_back("With " + counted(fitted, "fitted measurement") + " for " +
+                  counted(calibration.free.size(), "free parameter") +
                   " the model cannot be tested: add observables.");
   }
 }
@@ -93,7 +82,7 @@ void on_noise(const Calibration& calibration, const Fit& fit, Sentences& out) {
                   ", more than the measurement's standard error of " +
                   quantity(measurement.standard_error, measurement) +
                   ": enlarge the virtual experiment or average " +
-                  number(std::ceil(ratio * ratio)) + " runs.");
+                  number(std::ceil(ratio * ratio), figures) + " runs.");
   }
 }
 
@@ -114,8 +103,8 @@ void on_optimism(const Outlook& outlook, const Fit& fit, Sentences& out) {
     variance += 2.0 * b * b * b * b + 4.0 * a * a * b * b;
   }
   if (fit.misfit > mean + 2.0 * std::sqrt(variance)) {
-    out.push_back("Fresh replicates give a misfit of " + number(fit.misfit) +
-                  " where the emulator promised " + number(promised) +
+    out.push_back("Fresh replicates give a misfit of " + number(fit.misfit, figures) +
+                  " where the emulator promised " + number(promised, figures) +
                   ": the replicates are to be believed.");
   }
 }
@@ -126,7 +115,8 @@ void on_emulator(const Outlook& outlook, Sentences& out) {
     const auto& process = outlook.surrogate.process(j);
     if (!process || process->leave_one_out() <= 2.0) continue;
     out.push_back("The emulator of " + measurement_name(measurements[j]) +
-                  " predicts a run it has not seen " + number(std::sqrt(process->leave_one_out())) +
+                  " predicts a run it has not seen " +
+                  number(std::sqrt(process->leave_one_out()), figures) +
                   " times worse than it should: its intervals were widened by that factor.");
   }
 }
@@ -168,7 +158,7 @@ void on_verdict(const Calibration& calibration, const Fit& fit, Sentences& out) 
     out.push_back("The held-out " + measurement_name(measurement) +
                   " is not predicted: " + quantity(prediction.predicted, measurement) +
                   " against " + quantity(measurement.value, measurement) + " measured, " +
-                  number(std::abs(prediction.z)) + " standard errors apart.");
+                  number(std::abs(prediction.z), figures) + " standard errors apart.");
   }
 }
 
@@ -205,7 +195,7 @@ std::vector<std::string> remarks(const Outlook& outlook, const Fit& fit) {
   on_time(calibration, fit, out);
   if (fit.failed > 0) {
     out.push_back(std::to_string(fit.failed) + " of " +
-                  plural(static_cast<std::size_t>(fit.evaluations), "evaluation") +
+                  counted(static_cast<std::size_t>(fit.evaluations), "evaluation") +
                   " failed, most often with " + outlook.ledger.commonest_failure() + ".");
   }
   return out;
@@ -213,7 +203,7 @@ std::vector<std::string> remarks(const Outlook& outlook, const Fit& fit) {
 
 std::string too_few_succeeded(const Ledger& ledger, int succeeded, int needed) {
   std::string text = "Only " + std::to_string(succeeded) + " of " +
-                     plural(static_cast<std::size_t>(ledger.spent()), "evaluation") +
+                     counted(static_cast<std::size_t>(ledger.spent()), "evaluation") +
                      " succeeded, and " + std::to_string(needed) + " are needed to learn from";
   const std::string failure = ledger.commonest_failure();
   if (!failure.empty()) text += "; the commonest failure: " + failure;
@@ -222,10 +212,10 @@ std::string too_few_succeeded(const Ledger& ledger, int succeeded, int needed) {
 
 std::string budget_too_small(const Calibration& calibration, int needed) {
   return "The budget of " +
-         plural(static_cast<std::size_t>(std::max(calibration.budget.evaluations, 0)),
-                "evaluation") +
-         " is too small: " + plural(calibration.free.size(), "free parameter") + " need at least " +
-         std::to_string(needed) + ".";
+         counted(static_cast<std::size_t>(std::max(calibration.budget.evaluations, 0)),
+                 "evaluation") +
+         " is too small: " + counted(calibration.free.size(), "free parameter") +
+         " need at least " + std::to_string(needed) + ".";
 }
 
 }  // namespace repose::calibrator

@@ -2,29 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
 
 #include "calibrator/diagnosis/tolerance.hpp"
 #include "calibrator/misfit.hpp"
+#include "calibrator/phrase.hpp"
 #include "engine/catalogue.hpp"
 
 namespace repose::calibrator {
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  const int length = std::snprintf(text, sizeof text, "%.4g", value);
-  return {text, static_cast<std::size_t>(length)};
-}
-
-std::string in_unit(const Measurement& measurement) {
-  return number(measurement.value / measurement.unit.factor);
-}
-
-std::string count_of(std::ptrdiff_t count, std::string_view thing) {
-  return std::to_string(count) + " " + std::string(thing) + (count == 1 ? "" : "s");
-}
 
 /// Experiments that the study does not use.
 std::string unused_experiments(const Calibration& calibration) {
@@ -41,13 +27,15 @@ std::string unused_experiments(const Calibration& calibration) {
 void few_measurements(const Calibration& calibration,
                       const Fit& fit,
                       std::vector<std::string>& found) {
-  const auto fitted = std::ranges::count(calibration.measurements, Role::fit, &Measurement::role);
-  const auto learnt = std::ranges::count_if(fit.directions, &Direction::learnt);
+  const auto fitted = static_cast<std::size_t>(
+      std::ranges::count(calibration.measurements, Role::fit, &Measurement::role));
+  const auto learnt =
+      static_cast<std::size_t>(std::ranges::count_if(fit.directions, &Direction::learnt));
   if (fitted > learnt) return;
   const std::string others = unused_experiments(calibration);
   found.push_back(
-      "it cannot be tested: " + count_of(fitted, "measurement") + " determined " +
-      count_of(learnt, "direction") +
+      "it cannot be tested: " + counted(fitted, "measurement") + " determined " +
+      counted(learnt, "direction") +
       " of the free parameters, so that nothing is left to tell whether the model is right; add " +
       (others.empty() ? "measurements under other conditions"
                       : "a measurement of another kind (" + others + ")") +
@@ -73,10 +61,10 @@ void contradictions(const Calibration& calibration, std::vector<std::string>& fo
       if (!(gap > apart * error)) continue;
       found.push_back("measurements " + std::to_string(j + 1) + " and " + std::to_string(i + 1) +
                       " contradict each other: " + observable_name(all[i]) + " is " +
-                      in_unit(all[j]) + " and " + in_unit(all[i]) + " " +
-                      std::string(all[i].unit.symbol) + " under the same conditions, " +
-                      number(gap / error) + " standard errors apart; at most " + number(apart) +
-                      " can be chance");
+                      quantity(all[j].value, all[j].unit, 4) + " and " +
+                      quantity(all[i].value, all[i].unit, 4) + " under the same conditions, " +
+                      number(gap / error, 4) + " standard errors apart; at most " +
+                      number(apart, 4) + " can be chance");
     }
   }
 }
