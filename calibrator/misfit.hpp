@@ -29,6 +29,11 @@ class Suite {
   /// Which of the experiments it is, whatever its fidelity; nothing where it is none of them.
   [[nodiscard]] std::optional<std::size_t> place_of(const engine::Experiment& experiment) const;
 
+  /// From which of the experiments a measurement is read.
+  [[nodiscard]] std::size_t experiment_of(std::size_t measurement) const {
+    return readings_[measurement].experiment;
+  }
+
   /// Appends the trials of one evaluation. Fidelity is not the experiment's but the caller's.
   void append_trials(const engine::ParameterSet& parameters,
                      engine::Fidelity fidelity,

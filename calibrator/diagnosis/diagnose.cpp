@@ -17,6 +17,7 @@
 #include "calibrator/diagnosis/refits.hpp"
 #include "calibrator/diagnosis/rivals.hpp"
 #include "calibrator/diagnosis/screen.hpp"
+#include "calibrator/diagnosis/trace.hpp"
 #include "calibrator/diagnosis/verdict.hpp"
 
 namespace repose::calibrator {
@@ -29,7 +30,7 @@ using Vector = Eigen::VectorXd;
 constexpr int probe_replicates = 2;
 constexpr double probe_strength =
     0.8;  // large steps beat replicates: the trace is read above noise
-constexpr std::uint64_t anchor_design = 1'000'000;  // apart from other designs
+constexpr std::uint64_t anchor_design = 1'000'000;          // apart from other designs
 
 UnitPoint unit_point(const Vector& x, std::size_t dimensions) {
   return {x.data(), x.data() + dimensions};
@@ -61,7 +62,6 @@ class Inquiry {
   bool learn_offset();
   bool anchor(Diagnosis& diagnosis);
   bool probe(Diagnosis& diagnosis);
-  [[nodiscard]] Vector trace_of(std::size_t suspect, double& noise) const;
   void screen(Diagnosis& diagnosis);
   void fit_excuses(Diagnosis& diagnosis);
   bool refit(const std::vector<Additions>& candidates, Diagnosis& diagnosis);
@@ -137,11 +137,6 @@ bool Inquiry::anchor(Diagnosis& diagnosis) {
   return true;
 }
 
-bool observed(const std::vector<Index>& fitted, const SuiteRun& run) {
-  return std::ranges::all_of(
-      fitted, [&](Index j) { return std::isfinite(run.values[static_cast<std::size_t>(j)]); });
-}
-
 bool Inquiry::probe(Diagnosis& diagnosis) {
   std::vector<std::size_t> suspects;
   for (std::size_t k = 0; k < question_.suspects.size(); ++k) {
@@ -149,17 +144,22 @@ bool Inquiry::probe(Diagnosis& diagnosis) {
   }
   Points base(probe_replicates, {unit_point(probed_, dimensions_), {}});
   if (!ask("probe", base)) return false;
+  const std::uint64_t shared = runs_.all().back().seed;
   for (const double strength : {probe_strength, probe_strength / 2.0, probe_strength / 4.0}) {
     if (suspects.empty()) break;
-    Points points;
-    for (const std::size_t k : suspects) {
-      points.insert(points.end(), probe_replicates, {base.front().at, {{k, strength}}});
+    // The first replicate shows which experiments an effect touches, the others run only those.
+    for (int replicate = 0; replicate < probe_replicates; ++replicate) {
+      Points points;
+      for (const std::size_t k : suspects) {
+        points.push_back({base.front().at, {{k, strength}}});
+        if (replicate == 0) points.back().seed = shared;
+      }
+      if (!ask("probe", points)) return false;
     }
-    if (!ask("probe", points)) return false;
     // What a strong effect makes fail is tried weaker.
     std::erase_if(suspects, [&](std::size_t k) {
       return std::ranges::any_of(runs_.all(), [&](const SuiteRun& run) {
-        return run.strengths.contains(k) && observed(models_->fitted(), run);
+        return observed(runs_, k, models_->fitted(), run);
       });
     });
   }
@@ -176,30 +176,6 @@ bool Inquiry::probe(Diagnosis& diagnosis) {
   return true;
 }
 
-/// Change of the fitted measurements per unit of strength; `noise` is its variance in sum,
-/// whitened.
-Vector Inquiry::trace_of(std::size_t suspect, double& noise) const {
-  const std::vector<Index>& fitted = models_->fitted();
-  const Vector before = base_->emulator.mean(probed_)(fitted);
-  Vector sum = Vector::Zero(before.size());
-  int count = 0;
-  double strength = 0.0;
-  for (const SuiteRun& run : runs_.all()) {
-    const auto found = run.strengths.find(suspect);
-    if (found == run.strengths.end() || !observed(fitted, run)) continue;
-    strength = found->second;
-    sum +=
-        Eigen::Map<const Vector>(run.values.data(), static_cast<Index>(run.values.size()))(fitted);
-    ++count;
-  }
-  const Matrix& whitener = base_->fit.whitener;
-  const Vector run_noise = base_->emulator.noise()(fitted) / count;
-  const Vector variance =
-      (run_noise + base_->emulator.variance(probed_)(fitted)) / (strength * strength);
-  noise = (whitener * variance.asDiagonal() * whitener.transpose()).trace();
-  return (sum / count - before) / strength;
-}
-
 double share_at_least(const std::vector<Screen::Draw>& null, double Screen::Draw::*what, double x) {
   const auto count =
       std::ranges::count_if(null, [&](const Screen::Draw& draw) { return draw.*what >= x; });
@@ -208,13 +184,13 @@ double share_at_least(const std::vector<Screen::Draw>& null, double Screen::Draw
 
 void Inquiry::screen(Diagnosis& diagnosis) {
   std::vector<Departure> departures;
-  std::vector<double> noise(screened_.size());
-  for (std::size_t i = 0; i < screened_.size(); ++i) {
-    const std::size_t k = screened_[i];
-    departures.push_back({trace_of(k, noise[i]), question_.suspects[k].two_sided});
+  for (const std::size_t k : screened_) {
+    Trace trace = trace_of(runs_, k, models_->fitted(), *base_, probed_);
+    departures.push_back(
+        {std::move(trace.change), question_.suspects[k].two_sided, std::move(trace.variance)});
   }
   for (ExcuseDirection& direction : excuse_directions(question_, models_->fitted())) {
-    const std::vector<Departure> alone{{direction.change, true}};
+    const std::vector<Departure> alone{{direction.change, true, {}}};
     constexpr double all = 0.98;  // of it absorbed: then it is no excuse, the parameters are
     const Screen screen(base_->fit, base_->space, alone);
     if (screen.scores().front().absorbed > all) continue;
@@ -246,8 +222,8 @@ void Inquiry::screen(Diagnosis& diagnosis) {
     finding.p = share_at_least(null, &Screen::Draw::named, score.value);
     finding.strength = score.strength;
     finding.absorbed = score.absorbed;
-    finding.probe_noise = std::min(1.0, noise[i] / score.information);
-    weigh(finding, score.information, screened_.size());
+    finding.probe_noise = std::min(1.0, score.noise / score.information);
+    weigh(finding, power_of(score), screened_.size());
     finding.change.assign(question_.calibration.measurements.size(),
                           std::numeric_limits<double>::quiet_NaN());
     finding.trace = finding.change;

@@ -55,7 +55,7 @@ TrendEmulator Models::learn(const Additions& on) const {
   const SuiteRuns::Table table = runs_.table(on);
   Vector scale = Vector::Ones(table.inputs.cols());
   scale.tail(static_cast<Index>(on.size())).setConstant(largest_strength);
-  return {table.inputs, table.outputs, std::move(scale)};
+  return {table.inputs, table.outputs, std::move(scale), table.heard};
 }
 
 Predictor Models::predictor(const TrendEmulator& emulator) const {

@@ -61,6 +61,11 @@ double draw_t(engine::Random& random, double freedom) {
 
 }  // namespace
 
+double power_of(const Score& score) {
+  const double beyond = std::max(0.0, score.information - score.noise);
+  return beyond * beyond / score.information;
+}
+
 Screen::Screen(const ModelFit& base, const ModelSpace& space, std::vector<Departure> departures)
     : departures_(std::move(departures)), projector_(projector_off(base, space)) {
   const auto count = static_cast<Index>(departures_.size());
@@ -72,11 +77,15 @@ Screen::Screen(const ModelFit& base, const ModelSpace& space, std::vector<Depart
   }
   projected_ = whitened * projector_;
   slopes_ = projected_ * residuals_of(base, space);
+  const Vector weights =
+      (projector_.leftCols(data) * base.whitener).colwise().squaredNorm().transpose();
   products_ = projected_ * whitened.transpose();
   similarity_ = products_;
   for (Index k = 0; k < count; ++k) {
     Score score =
         score_of(slopes_(k), products_(k, k), departures_[static_cast<std::size_t>(k)].two_sided);
+    const Vector& variance = departures_[static_cast<std::size_t>(k)].variance;
+    if (variance.size() > 0) score.noise = weights.dot(variance);
     const double whole = whitened.row(k).squaredNorm();
     score.absorbed = whole > 0.0 ? std::clamp(1.0 - products_(k, k) / whole, 0.0, 1.0) : 1.0;
     scores_.push_back(score);

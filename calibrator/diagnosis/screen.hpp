@@ -6,6 +6,13 @@
 ///   r  whitened residuals, then the prior's     g_k  whitened change of the predictions per unit
 ///   of strength, then zeros     P  projector off the tangent space of the free parameters
 ///
+/// A trace that was read from runs carries their scatter, which adds to I without any power:
+///
+///   noise_k = sum_i w_ik^2 v_ki,  W = P L^-1     power_k = (I_k - noise_k)^2 / I_k
+///
+///   v_ki  variance of the change of target i per unit of strength     power_k  what I_k would be
+///   worth without scatter: phi^2 power_k is the noncentrality of S_k
+///
 /// phi is held within 0 (or its mirror image, where strengths have two signs) and 1.3. A change
 /// that the free parameters can imitate is absorbed: it leaves no trace whatever its strength.
 ///
@@ -31,14 +38,19 @@ inline constexpr double largest_strength = 1.3;
 struct Departure {
   Eigen::VectorXd change;  ///< of the targets per unit of strength, in their units
   bool two_sided = false;
+  Eigen::VectorXd variance = {};  ///< of the change, where it was read from runs
 };
 
 struct Score {
   double value = 0.0;        ///< S: what -2 log likelihood would fall by
   double strength = 0.0;     ///< phi, one step; too small where much is absorbed
   double information = 0.0;  ///< I
+  double noise = 0.0;        ///< part of I that is scatter of the runs behind the trace
   double absorbed = 0.0;     ///< share that the free parameters imitate
 };
+
+/// What the information is worth: beyond scatter.
+double power_of(const Score& score);
 
 /// Departures of a model, scored together.
 class Screen {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 namespace repose::calibrator {
@@ -68,28 +69,37 @@ Option weigh(const Matrix& correlation,
 
 }  // namespace
 
-TrendEmulator::TrendEmulator(const Matrix& inputs, const Matrix& outputs, Vector scale)
+TrendEmulator::TrendEmulator(const Matrix& inputs,
+                             const Matrix& outputs,
+                             Vector scale,
+                             const Heard& heard)
     : scale_(std::move(scale)), noise_(Vector::Constant(outputs.cols(), -1.0)) {
-  std::map<std::vector<Index>, std::vector<Index>> groups;  // runs that observed -> outputs
+  std::vector<Index> every(static_cast<std::size_t>(inputs.cols()));
+  std::iota(every.begin(), every.end(), Index{0});
+  using Rows = std::vector<Index>;
+  std::map<std::pair<Rows, std::vector<Index>>, std::vector<Index>> groups;  // -> outputs
   for (Index j = 0; j < outputs.cols(); ++j) {
-    std::vector<Index> rows;
+    Rows rows;
     for (Index i = 0; i < outputs.rows(); ++i) {
       if (std::isfinite(outputs(i, j))) rows.push_back(i);
     }
-    groups[std::move(rows)].push_back(j);
+    const auto& own = heard.empty() ? every : heard[static_cast<std::size_t>(j)];
+    groups[{std::move(rows), own}].push_back(j);
   }
-  for (const auto& [rows, columns] : groups) {
+  for (const auto& [key, columns] : groups) {
+    const auto& [rows, own] = key;
     // A trend and two runs to judge it by.
-    if (static_cast<Index>(rows.size()) >= inputs.cols() + 3) learn(rows, columns, inputs, outputs);
+    if (rows.size() < own.size() + 3) continue;
+    const Vector own_scale = scale_(own);
+    const Matrix runs = inputs(rows, own).array().rowwise() / own_scale.transpose().array();
+    learn(own, runs, columns, outputs(rows, columns));
   }
 }
 
-void TrendEmulator::learn(const std::vector<Index>& rows,
+void TrendEmulator::learn(const std::vector<Index>& heard,
+                          const Matrix& runs,
                           const std::vector<Index>& columns,
-                          const Matrix& inputs,
-                          const Matrix& outputs) {
-  const Matrix runs = (inputs(rows, Eigen::all).array().rowwise() / scale_.transpose().array());
-  const Matrix y = outputs(rows, columns);
+                          const Matrix& y) {
   Matrix trend_inputs(runs.rows(), runs.cols() + 1);
   trend_inputs << Vector::Ones(runs.rows()), runs;
   const Matrix d2 = squared_distances(runs);
@@ -117,6 +127,7 @@ void TrendEmulator::learn(const std::vector<Index>& rows,
       block.outputs.push_back(columns[static_cast<std::size_t>(c)]);
       noise_(block.outputs.back()) = option.nugget * option.variance(c);
     }
+    block.inputs = heard;
     block.length = option.length;
     block.runs = runs;
     block.root = option.root;
@@ -138,9 +149,10 @@ Vector TrendEmulator::mean(const Vector& x) const {
   const Vector scaled = x.cwiseQuotient(scale_);
   Vector result = Vector::Constant(outputs(), std::numeric_limits<double>::quiet_NaN());
   for (const Block& block : blocks_) {
+    const Vector own = scaled(block.inputs);
     const Vector values = block.trend.row(0).transpose() +
-                          block.trend.bottomRows(scaled.size()).transpose() * scaled +
-                          block.weights.transpose() * correlations(block, scaled);
+                          block.trend.bottomRows(own.size()).transpose() * own +
+                          block.weights.transpose() * correlations(block, own);
     result(block.outputs) = values;
   }
   return result;
@@ -150,11 +162,13 @@ Matrix TrendEmulator::jacobian(const Vector& x) const {
   const Vector scaled = x.cwiseQuotient(scale_);
   Matrix result = Matrix::Constant(outputs(), x.size(), std::numeric_limits<double>::quiet_NaN());
   for (const Block& block : blocks_) {
-    const Vector k = correlations(block, scaled) / (block.length * block.length);
-    const Matrix slopes = (block.runs.rowwise() - scaled.transpose()).array().colwise() * k.array();
+    const Vector own = scaled(block.inputs), own_scale = scale_(block.inputs);
+    const Vector k = correlations(block, own) / (block.length * block.length);
+    const Matrix slopes = (block.runs.rowwise() - own.transpose()).array().colwise() * k.array();
     const Matrix local =
-        block.trend.bottomRows(scaled.size()).transpose() + block.weights.transpose() * slopes;
-    result(block.outputs, Eigen::all) = local.array().rowwise() / scale_.transpose().array();
+        block.trend.bottomRows(own.size()).transpose() + block.weights.transpose() * slopes;
+    result(block.outputs, Eigen::all).setZero();
+    result(block.outputs, block.inputs) = local.array().rowwise() / own_scale.transpose().array();
   }
   return result;
 }
@@ -162,10 +176,11 @@ Matrix TrendEmulator::jacobian(const Vector& x) const {
 Vector TrendEmulator::variance(const Vector& x) const {
   const Vector scaled = x.cwiseQuotient(scale_);
   Vector result = Vector::Constant(outputs(), std::numeric_limits<double>::quiet_NaN());
-  Vector h(scaled.size() + 1);
-  h << 1.0, scaled;
   for (const Block& block : blocks_) {
-    const Vector v = block.root.matrixL().solve(correlations(block, scaled));
+    const Vector own = scaled(block.inputs);
+    Vector h(own.size() + 1);
+    h << 1.0, own;
+    const Vector v = block.root.matrixL().solve(correlations(block, own));
     const Vector t = h - block.basis.transpose() * v;
     const double share = std::max(1.0 - v.squaredNorm() + t.dot(block.basis_root.solve(t)), 1e-6);
     result(block.outputs) = share * block.variance;

@@ -27,8 +27,12 @@ class TrendEmulator {
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
 
+  /// Of each output, the inputs that it depends on.
+  using Heard = std::vector<std::vector<Eigen::Index>>;
+
   /// A row is a run, a column an input or an output; outputs are NaN where a run observed nothing.
-  TrendEmulator(const Matrix& inputs, const Matrix& outputs, Vector scale);
+  /// Without `heard` every output depends on every input.
+  TrendEmulator(const Matrix& inputs, const Matrix& outputs, Vector scale, const Heard& heard = {});
 
   [[nodiscard]] Eigen::Index outputs() const { return noise_.size(); }
 
@@ -41,9 +45,11 @@ class TrendEmulator {
   [[nodiscard]] const Vector& noise() const { return noise_; }  ///< variance of one run
 
  private:
-  /// Outputs that were observed in the same runs and share length and noise.
+  /// Outputs that depend on the same inputs, were observed in the same runs, and share length and
+  /// noise.
   struct Block {
     std::vector<Eigen::Index> outputs;
+    std::vector<Eigen::Index> inputs;
     double length = 0.0;
     Matrix runs;  ///< inputs over scale
     Eigen::LLT<Matrix> root;
@@ -54,10 +60,10 @@ class TrendEmulator {
     Vector variance;
   };
 
-  void learn(const std::vector<Eigen::Index>& rows,
+  void learn(const std::vector<Eigen::Index>& heard,
+             const Matrix& runs,
              const std::vector<Eigen::Index>& columns,
-             const Matrix& inputs,
-             const Matrix& outputs);
+             const Matrix& y);
   [[nodiscard]] static Vector correlations(const Block& block, const Vector& x);
 
   Vector scale_;

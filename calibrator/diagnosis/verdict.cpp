@@ -159,13 +159,18 @@ bool wants_pairs(const Diagnosis& diagnosis) {
   return diagnosis.excuses.empty() || diagnosis.excuses.front().misfit_p < fits;
 }
 
-void weigh(EffectFinding& finding, double information, std::size_t effects) {
-  const double deviation = 1.0 / std::sqrt(information);
+void weigh(EffectFinding& finding, double power, std::size_t effects) {
+  constexpr double least = 1e-9;
+  const double deviation = 1.0 / std::sqrt(std::max(power, least));
   const double quantile = Eigen::numext::ndtri(
       1.0 - alpha_named / static_cast<double>(std::max<std::size_t>(effects, 1)));
-  constexpr double power = 0.84;  // 80 % point of a normal
-  finding.detectable = (quantile + power) * deviation;
-  finding.strength_upper = std::max(0.0, std::abs(finding.strength) + one_sided * deviation);
+  constexpr double eighty = 0.84;  // 80 % point of a normal
+  finding.detectable = (quantile + eighty) * deviation;
+  // Scatter in a trace makes a strength look smaller (errors in variables: Fuller 1987).
+  constexpr double clearest = 0.05;
+  const double strength =
+      std::abs(finding.strength) / std::max(1.0 - finding.probe_noise, clearest);
+  finding.strength_upper = strength + one_sided * deviation;
   if (finding.p < alpha_named) {
     finding.status = EffectStatus::supported;
   } else {

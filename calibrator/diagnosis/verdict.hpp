@@ -27,8 +27,9 @@ bool adequate(const Diagnosis& diagnosis);
 /// Whether no single effect fits, nor an excuse.
 bool wants_pairs(const Diagnosis& diagnosis);
 
-/// Detectable and excluded strengths, and the status, from one effect's information.
-void weigh(EffectFinding& finding, double information, std::size_t effects);
+/// Detectable and excluded strengths, and the status, from what one effect's trace is worth
+/// (power_of, screen.hpp).
+void weigh(EffectFinding& finding, double power, std::size_t effects);
 
 /// Effects whose traces are the same once the free parameters have done their best.
 void find_families(const Screen& screen,

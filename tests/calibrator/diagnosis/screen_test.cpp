@@ -84,6 +84,23 @@ TEST_CASE("what the parameters imitate leaves no trace, and a strength below zer
   CHECK(screen.similarity()(1, 2) == Approx(1.0));
 }
 
+TEST_CASE("scatter of the runs behind a trace adds information to it but no power",
+          "[calibrator]") {
+  const MatrixXd slopes = (MatrixXd(4, 1) << 1, 1, 1, 1).finished();
+  const Fitted base = fitted(slopes, VectorXd::Zero(4));
+  const VectorXd trace = (VectorXd(4) << 1, -1, 2, -2).finished();
+  const VectorXd variance = (VectorXd(4) << 1, 0, 2, 1).finished();
+  const Screen screen(base.fit, base.space, {{trace, true}, {trace, true, variance}});
+  const Score &clear = screen.scores()[0], &blurred = screen.scores()[1];
+  CHECK(power_of(clear) == Approx(10.0).epsilon(1e-4));
+  CHECK(blurred.information == Approx(10.0).epsilon(1e-4));
+  CHECK(blurred.noise == Approx(0.75 * 4.0).epsilon(1e-4));  // the mean is the parameter's
+  CHECK(power_of(blurred) == Approx(4.9).epsilon(1e-4));
+  // A trace of nothing but scatter is worth nothing.
+  const Screen empty(base.fit, base.space, {{trace, true, 4.0 * variance}});
+  CHECK(power_of(empty.scores().front()) == 0.0);
+}
+
 TEST_CASE("the joint null exceeds the largest score as often as it says", "[calibrator]") {
   const MatrixXd slopes = (MatrixXd(6, 1) << 1, 1, 1, 1, 1, 1).finished();
   const Fitted base = fitted(slopes, VectorXd::Zero(6));

@@ -71,3 +71,15 @@ TEST_CASE("an output that few runs observed is unknown, and others keep all thei
   CHECK(emulator.knows(0));
   CHECK(emulator.mean(x)(0) == Approx(before).margin(1e-9));
 }
+
+TEST_CASE("an output that does not depend on an input is the same at all its values",
+          "[calibrator]") {
+  const Runs r = runs(40);
+  const TrendEmulator::Heard heard{{0, 1}, {0}, {0, 1}};
+  const TrendEmulator emulator(r.inputs, r.outputs, Eigen::Vector2d::Ones(), heard);
+  const Eigen::Vector2d here(0.4, 0.2), there(0.4, 0.9);
+  CHECK(emulator.mean(here)(1) == emulator.mean(there)(1));
+  CHECK(emulator.variance(here)(1) == emulator.variance(there)(1));
+  CHECK(emulator.jacobian(here)(1, 1) == 0.0);
+  CHECK(std::abs(emulator.mean(here)(0) - emulator.mean(there)(0)) == Approx(0.7).margin(1e-6));
+}
