@@ -30,6 +30,7 @@ using Vector = Eigen::VectorXd;
 constexpr int probe_replicates = 2;
 constexpr double probe_strength =
     0.8;  // large steps beat replicates: the trace is read above noise
+constexpr int most_runs = 180, most_runs_with_pairs = 350;  // before what to measure next is asked
 constexpr std::uint64_t anchor_design = 1'000'000;          // apart from other designs
 
 UnitPoint unit_point(const Vector& x, std::size_t dimensions) {
@@ -64,7 +65,7 @@ class Inquiry {
   bool probe(Diagnosis& diagnosis);
   void screen(Diagnosis& diagnosis);
   void fit_excuses(Diagnosis& diagnosis);
-  bool refit(const std::vector<Additions>& candidates, Diagnosis& diagnosis);
+  bool refit(const std::vector<Additions>& candidates, int most, Diagnosis& diagnosis);
   bool refit_best(Diagnosis& diagnosis);
   bool refit_pairs(Diagnosis& diagnosis);
   bool settle(Diagnosis& diagnosis);
@@ -254,8 +255,8 @@ void Inquiry::fit_excuses(Diagnosis& diagnosis) {
   std::ranges::sort(diagnosis.excuses, {}, &Excuse::deviance);
 }
 
-bool Inquiry::refit(const std::vector<Additions>& candidates, Diagnosis& diagnosis) {
-  auto models = refits_->fit(candidates);
+bool Inquiry::refit(const std::vector<Additions>& candidates, int most, Diagnosis& diagnosis) {
+  auto models = refits_->fit(candidates, most - runs_.spent());
   if (!models) return false;
   std::ranges::move(*models, std::back_inserter(refitted_));
   std::ranges::stable_sort(refitted_, {}, [](const Model& model) { return model.fit.deviance; });
@@ -278,12 +279,12 @@ bool Inquiry::refit_best(Diagnosis& diagnosis) {
       expected,
       [this](const std::string& stage, const Points& points) { return ask(stage, points); });
   const auto best = best_singles(*screen_, screened_, diagnosis);
-  return best.empty() || refit(best, diagnosis);
+  return best.empty() || refit(best, most_runs, diagnosis);
 }
 
 bool Inquiry::refit_pairs(Diagnosis& diagnosis) {
   const auto best = best_pairs(*screen_, screened_, diagnosis);
-  return best.empty() || refit(best, diagnosis);
+  return best.empty() || refit(best, most_runs_with_pairs, diagnosis);
 }
 
 /// Explanations that are still open, and what would settle them.

@@ -17,7 +17,8 @@ using Eigen::Index;
 using Vector = Eigen::VectorXd;
 
 constexpr std::uint64_t refit_design = 2'000'000;  // apart by index
-constexpr int rounds = 5, least_rounds = 3;
+constexpr int least_rounds = 3;                    // for every model that stays near the front
+constexpr int more_rounds = 2;                     // each for the foremost of those that still move
 constexpr double far = 20.0;  // behind the best, in deviance: no later design has turned such a gap
 
 }  // namespace
@@ -146,14 +147,17 @@ std::vector<Vector> Refits::starts_of(const Additions& on) const {
   return starts;
 }
 
-Points Refits::design_of(const Candidate& candidate, int round) {
+int Refits::size_of_design(const Candidate& candidate, int round) const {
   const int unknowns = static_cast<int>(base_.size()) + static_cast<int>(candidate.on.size());
-  const int count = std::clamp(3 * unknowns - (round == 0 ? 2 : 4), round == 0 ? 10 : 8, 20);
+  return std::clamp(3 * unknowns - (round == 0 ? 2 : 4), round == 0 ? 10 : 8, 20);
+}
+
+Points Refits::design_of(const Candidate& candidate, int round) {
   std::optional<Neighbourhood> about;
   if (candidate.model) about = {candidate.model->fit.at, round == 1 ? 0.18 : 0.12};
   return spread(models_.space(candidate.on),
                 candidate.on,
-                count,
+                size_of_design(candidate, round),
                 question_.calibration.seed,
                 refit_design + designs_++,
                 about);
@@ -173,14 +177,36 @@ bool Refits::learn(Candidate& candidate, int round) const {
   return round + 1 < least_rounds || way > 0.8;
 }
 
-std::optional<std::vector<Model>> Refits::fit(const std::vector<Additions>& candidates) {
+/// Of the first designs everyone has one, whatever they cost.
+std::vector<Refits::Candidate*> Refits::whose_turn(std::vector<Candidate>& all,
+                                                   int round,
+                                                   int runs) const {
+  std::vector<Candidate*> turn;
+  for (Candidate& candidate : all) {
+    if (candidate.open) turn.push_back(&candidate);
+  }
+  if (round == 0) return turn;
+  std::ranges::stable_sort(
+      turn, {}, [](const Candidate* candidate) { return candidate->model->fit.deviance; });
+  const std::size_t most = round < least_rounds ? turn.size() : 1;
+  std::vector<Candidate*> affordable;
+  for (Candidate* candidate : turn) {
+    runs -= size_of_design(*candidate, round);
+    if (runs >= 0 && affordable.size() < most) affordable.push_back(candidate);
+  }
+  return affordable;
+}
+
+std::optional<std::vector<Model>> Refits::fit(const std::vector<Additions>& candidates, int runs) {
   std::vector<Candidate> all;
+  all.reserve(candidates.size());
   for (const Additions& on : candidates) all.push_back({on});
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < least_rounds + more_rounds; ++round) {
+    const std::vector<Candidate*> turn = whose_turn(all, round, runs);
     Points points;
     std::string names;
-    for (const Candidate& candidate : all) {
-      if (!candidate.open) continue;
+    for (const Candidate* turned : turn) {
+      const Candidate& candidate = *turned;
       const Points design = design_of(candidate, round);
       points.insert(points.end(), design.begin(), design.end());
       names += names.empty() ? "" : ", ";
@@ -189,17 +215,17 @@ std::optional<std::vector<Model>> Refits::fit(const std::vector<Additions>& cand
       }
     }
     if (points.empty()) break;
+    runs -= static_cast<int>(points.size());
     if (!ask_("refit " + names, points)) return std::nullopt;
+    for (Candidate* candidate : turn) candidate->open = learn(*candidate, round);
     double best = std::numeric_limits<double>::infinity();
-    for (Candidate& candidate : all) {
-      if (candidate.open) candidate.open = learn(candidate, round);
-      best = std::min(best, candidate.model->fit.deviance);
-    }
+    for (const Candidate& candidate : all) best = std::min(best, candidate.model->fit.deviance);
     for (Candidate& candidate : all) {
       if (candidate.model->fit.deviance > best + far) candidate.open = false;
     }
   }
   std::vector<Model> models;
+  models.reserve(all.size());
   for (Candidate& candidate : all) models.push_back(*std::move(candidate.model));
   return models;
 }

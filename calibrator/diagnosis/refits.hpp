@@ -57,9 +57,10 @@ class Refits {
          Ask ask);
 
   /// All candidates side by side: a design over the whole box each, then designs about the running
-  /// optimum that follow it until it stays. One that is far behind is given up. Nothing where it
-  /// was asked to stop.
-  std::optional<std::vector<Model>> fit(const std::vector<Additions>& candidates);
+  /// optimum that follow it; two more, one at a time, go to the foremost that has not come to rest.
+  /// One that is far behind is given up, and once `runs` no longer suffice for all that are left,
+  /// the foremost come first. Nothing where it was asked to stop.
+  std::optional<std::vector<Model>> fit(const std::vector<Additions>& candidates, int runs);
 
  private:
   struct Candidate {
@@ -68,6 +69,10 @@ class Refits {
     bool open = true;
   };
 
+  [[nodiscard]] int size_of_design(const Candidate& candidate, int round) const;
+  [[nodiscard]] std::vector<Candidate*> whose_turn(std::vector<Candidate>& all,
+                                                   int round,
+                                                   int runs) const;
   [[nodiscard]] std::vector<Eigen::VectorXd> starts_of(const Additions& on) const;
   Points design_of(const Candidate& candidate, int round);
   [[nodiscard]] bool learn(Candidate& candidate, int round) const;

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
 #include <string_view>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
 
 #include "calibrator/diagnosis/diagnosis.hpp"
 #include "tests/support/stand_in.hpp"
@@ -49,6 +53,37 @@ inline std::set<std::string> open_classes(const calibrator::Diagnosis& diagnosis
     if (touched) classes.insert(own.begin(), own.end());
   }
   return classes;
+}
+
+/// How much evidence of what is hidden the readings could hold, lambda: its squared trace at the
+/// truth, in the readings' errors, less what the free parameters imitate.
+inline double noncentrality(const Problem& problem) {
+  const auto& measurements = problem.calibration.measurements;
+  const auto n = static_cast<Eigen::Index>(measurements.size());
+  const auto answers = [&](const std::array<double, 5>& u, const Hidden& hidden) {
+    Eigen::VectorXd result(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const auto& own = measurements[static_cast<std::size_t>(j)];
+      result(j) = response(u, hidden, own.observable, own.experiment.settings);
+    }
+    return result;
+  };
+  constexpr double prior_deviation = 0.6, step = 1e-3;
+  const Eigen::MatrixXd root = problem.covariance.llt().matrixL();
+  const auto whiten = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    return root.triangularView<Eigen::Lower>().solve(x);
+  };
+  Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(n + 5, 5);
+  for (Eigen::Index k = 0; k < 5; ++k) {
+    auto right = problem.truth, left = problem.truth;
+    right[static_cast<std::size_t>(k)] += step;
+    left[static_cast<std::size_t>(k)] -= step;
+    tangent.col(k).head(n) = whiten((answers(right, {}) - answers(left, {})) / (2.0 * step));
+    tangent(n + k, k) = 1.0 / prior_deviation;
+  }
+  Eigen::VectorXd trace = Eigen::VectorXd::Zero(n + 5);
+  trace.head(n) = whiten(answers(problem.truth, problem.hidden) - answers(problem.truth, {}));
+  return (trace - tangent * tangent.colPivHouseholderQr().solve(trace)).squaredNorm();
 }
 
 /// The effect of the largest score; what the screen alone would say.
