@@ -8,6 +8,7 @@
 #include "server/json/diagnosis_json.hpp"
 #include "server/json/missing_effect_json.hpp"
 #include "server/json/report_json.hpp"
+#include "server/report/diagnosis_words.hpp"
 #include "server/report/label.hpp"
 #include "server/report/number_text.hpp"
 
@@ -39,7 +40,8 @@ std::string status_of(const EffectFinding& finding, const engine::ParameterSet& 
     case EffectStatus::supported:
       return "supported";
     case EffectStatus::not_testable:
-      return "not testable with these data";
+      return leaves_no_trace(finding) ? "changes none of these measurements"
+                                      : "not testable with these data";
     case EffectStatus::outdone:
       return "not needed: another explanation does better";
     case EffectStatus::not_probed:
@@ -63,7 +65,8 @@ std::string effect_table(const Diagnosis& diagnosis) {
   TextTable table({"effect", "score", "p", "strength", "detectable", "absorbed", ""}, "lrrrrrl");
   for (const EffectFinding* finding : order) {
     const bool probed = finding->status != EffectStatus::not_probed;
-    const auto cell = [&](const std::string& text) { return probed ? text : std::string("-"); };
+    const bool traced = probed && !leaves_no_trace(*finding);
+    const auto cell = [&](const std::string& text) { return traced ? text : std::string("-"); };
     table.row({finding->suspect.name,
                cell(fixed_text(finding->score, 1)),
                cell(p_text(finding->p)),

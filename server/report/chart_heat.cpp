@@ -85,7 +85,7 @@ std::string model_legend(const Lineage& lineage) {
 std::string residual_map(const Lineage& lineage) {
   const auto groups = groups_by_observable(lineage.front().calibration());
   const auto models = static_cast<double>(lineage.size());
-  const double left = std::max(170.0, map_width - 110.0 * models);
+  const double left = std::max(170.0, map_width - 145.0 * models);
   const double column = (map_width - left) / models;
   double size = map_head;
   for (const auto& group : groups) {

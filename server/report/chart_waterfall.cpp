@@ -11,7 +11,7 @@ namespace repose::server {
 
 namespace {
 
-constexpr double width = 480.0, left = 8.0, right = width - 44.0;  // pixels at full size
+constexpr double width = 480.0, left = 8.0, right = width - 124.0;  // pixels at full size
 
 /// Root mean square of the group's z with that role; NaN where there is none.
 double rms(const Generation& generation, const MeasurementGroup& group, calibrator::Role role) {
@@ -25,6 +25,13 @@ double rms(const Generation& generation, const MeasurementGroup& group, calibrat
     ++count;
   }
   return count == 0 ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(sum / count);
+}
+
+/// "1.13; held out 2.15", of those that there are.
+std::string value_text(double fitted, double held_out) {
+  std::string text = std::isfinite(fitted) ? fixed_text(fitted, 2) : "";
+  if (!std::isfinite(held_out)) return text;
+  return text + (text.empty() ? "" : "; ") + "held out " + fixed_text(held_out, 2);
 }
 
 constexpr double bar = 15.0, title = 22.0, gap = 10.0, head = 22.0, foot = 40.0;
@@ -46,13 +53,11 @@ void draw_group(
       svg.circle(at,
                  y + 0.5 * bar,
                  5.0,
-                 "model " + model_style(g) + " hollow",
+                 "model " + model_style(g) + " hollow aside",
                  "held out: " + fixed_text(open, 2));
       end = std::max(end, at + 5.0);
     }
-    if (std::isfinite(fitted)) {
-      svg.text(end + 6.0, y + 11.5, fixed_text(fitted, 2), "start", "tick left");
-    }
+    svg.text(end + 6.0, y + 11.5, value_text(fitted, open), "start", "tick left");
     y += bar;
   }
 }

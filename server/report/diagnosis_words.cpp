@@ -45,17 +45,22 @@ std::string of_supported(const Diagnosis& diagnosis, std::size_t effect) {
 }
 
 std::string of_untestable(const EffectFinding& finding) {
+  if (leaves_no_trace(finding)) return "It changes none of these measurements.";
   constexpr double nearly_all = 0.9;
   if (finding.absorbed > nearly_all) {
     return "The free parameters imitate " + percent(finding.absorbed) +
            " of what it does to these measurements.";
   }
-  if (!(finding.detectable < 100.0)) return "It changes none of these measurements.";
   return "Even a strong one changes these measurements too little: it would be found from " +
          fixed_text(finding.detectable, 1) + " times the strong value on.";
 }
 
 }  // namespace
+
+bool leaves_no_trace(const EffectFinding& finding) {
+  return std::ranges::none_of(finding.change,
+                              [](double change) { return std::isfinite(change) && change != 0.0; });
+}
 
 std::string strength_text(const EffectFinding& finding,
                           const engine::ParameterSet& parameters,

@@ -16,6 +16,9 @@ std::string strength_text(const calibrator::EffectFinding& finding,
 /// "supported", "not testable": of one word or two.
 std::string status_text(calibrator::EffectStatus status);
 
+/// Whether it changes none of the measurements by a bit.
+bool leaves_no_trace(const calibrator::EffectFinding& finding);
+
 /// Why the effect has its status, in a sentence.
 std::string reason(const calibrator::Diagnosis& diagnosis, std::size_t effect);
 

@@ -207,8 +207,19 @@ std::string ranking_section(const Generation& generation) {
                      escaped(model_name(generation)) + "</h2>\n<div class=\"scroll\"><table " +
                      "class=\"ranking\">\n<tr><th>effect</th><th>status</th><th>evidence</th>" +
                      "<th>p</th><th>strength</th><th>absorbed</th></tr>\n";
-  for (const std::size_t effect : ranked(diagnosis)) text += effect_row(diagnosis, effect, most);
+  std::string traceless;
+  for (const std::size_t effect : ranked(diagnosis)) {
+    const EffectFinding& finding = diagnosis.effects[effect];
+    if (finding.status == calibrator::EffectStatus::not_testable && leaves_no_trace(finding)) {
+      traceless += (traceless.empty() ? "" : ", ") + finding.suspect.title;
+    } else {
+      text += effect_row(diagnosis, effect, most);
+    }
+  }
   text += "</table></div>\n";
+  if (!traceless.empty()) {
+    text += element("p", "Nothing to these measurements: " + traceless + ".", "quiet-text");
+  }
   text += element("p",
                   "Evidence is by how much -2 log likelihood falls; p the chance that any effect "
                   "scores so high where nothing is missing; strength 1 is strong but plausible; "

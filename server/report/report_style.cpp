@@ -152,6 +152,7 @@ figcaption b { color: var(--ink); }
 .chart .m2 { --mark: var(--m2); } .chart .m3 { --mark: var(--m3); }
 .chart .model { fill: var(--mark); stroke: var(--sheet); stroke-width: 1.2; }
 .chart .model.hollow { fill: var(--sheet); stroke: var(--mark); stroke-width: 2.2; }
+.chart .model.hollow.aside { stroke: var(--ink); stroke-width: 1.6; }
 .chart .model.faint { fill-opacity: .55; stroke: none; }
 .chart .model-line { fill: none; stroke: var(--mark); stroke-width: 1.6; stroke-opacity: .75; }
 .chart .floor { stroke: var(--poor); stroke-width: 1.4; stroke-dasharray: 5 4; }

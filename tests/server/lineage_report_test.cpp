@@ -151,6 +151,17 @@ TEST_CASE("no chart of a lineage holds a number that is none", "[server]") {
   CHECK(text.find("inf\"") == std::string::npos);
 }
 
+TEST_CASE("effects that change none of the measurements are named in one line, without figures",
+          "[server]") {
+  Lineage lineage = sample();
+  auto& effects = lineage.front().diagnosis->effects;
+  effects.push_back(finding("twisting_resistance", "Twisting", EffectStatus::not_testable));
+  effects.back().change = {0.0, 0.0, none, 0.0};
+  const std::string text = report(lineage);
+  CHECK_THAT(text, Contains("Nothing to these measurements: Twisting."));
+  CHECK(text.find("<td>Twisting") == std::string::npos);
+}
+
 TEST_CASE("a held-out measurement is drawn hollow under every model", "[server]") {
   const std::string charts = parity_panels(sample()) + trend_panels(sample());
   CHECK(count(charts, "model m0 hollow") == 2);  // one in each of the two
