@@ -64,6 +64,38 @@ TEST_CASE("a speed dependence that our own engine hid is added, and the error fa
   CHECK(path_through(*items, id).size() == 2);
 }
 
+TEST_CASE("of four suspects the hidden speed dependence is named, and adding it settles the matter",
+          "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  const std::string suspects =
+      R"(["velocity_restitution","plastic_restitution","air_drag","twisting_resistance"])";
+  constexpr double plausible = 3e-5;  // s; twice as much is beyond what a diagnosis looks for
+  const std::int64_t id =
+      read(service.calibrate(hidden_drop_study(plausible, suspects), {}, {}))["id"];
+  const json told = read(service.diagnose(id, {}, {}, {}))["result"];
+  INFO(told["text"]);
+  REQUIRE((told["verdict"] == "named" || told["verdict"] == "family"));
+  CHECK(told["evaluations"] <= 200);
+  REQUIRE(told["refits"].size() > 1);  // the runner-up is shown
+  const std::string front = told["refits"][0]["effects"][0]["name"];
+  const bool depends_on_speed = front == "velocity_restitution" || front == "plastic_restitution";
+  CHECK(depends_on_speed);
+  for (const json& effect : told["effects"]) {
+    CAPTURE(effect["name"]);
+    CHECK((effect["name"] != "twisting_resistance" || effect["status"] == "not_testable"));
+  }
+  CHECK(told["refits"][0]["fitted_z"].get<double>() < 0.5 * told["fitted_z"].get<double>());
+
+  const auto study = service.extension_study(id, front);
+  REQUIRE(study);
+  const json child = read(service.calibrate(*study, {}, {}));
+  const json after = read(service.compare(child["id"], {}));
+  CHECK(after["held_out_z"] < after["before"]["held_out_z"]);
+  const json settled = read(service.diagnose(child["id"], {}, {}, {}))["result"];
+  CHECK((settled["verdict"] == "adequate" || settled["verdict"] == "not_testable"));
+}
+
 TEST_CASE("a diagnosis that was stopped is taken up, and one that is cancelled is not",
           "[server]") {
   const TemporaryFolder folder;

@@ -29,9 +29,10 @@ inline double dropped(double height, double relaxation) {
   return std::get<std::vector<engine::Observation>>(evaluation.outcome).front().value;
 }
 
-/// The study document. One measurement in four is held out. Where nothing is hidden its diagnosis
-/// is a matter of drops; else it asks every experiment what to measure next, which takes long.
-inline std::string hidden_drop_study(double relaxation) {
+/// The study document. One measurement in four is held out. `suspects`: a JSON list; empty: the
+/// whole catalogue.
+inline std::string hidden_drop_study(double relaxation,
+                                     const std::string& suspects = R"(["velocity_restitution"])") {
   std::string measurements;
   int index = 0;
   for (const double height : {0.004, 0.008, 0.016, 0.032, 0.064, 0.128}) {
@@ -51,8 +52,8 @@ inline std::string hidden_drop_study(double relaxation) {
          R"("free":[{"field":"restitution.coefficient","between":["grain","wall"],)"
          R"("lower":0.3,"upper":0.95,"unit":"1"}],)"
          R"("measurements":[)" +
-         measurements +
-         R"(],"suspects":["velocity_restitution"],)"
+         measurements + R"(],"suspects":)" + suspects +
+         R"(,)"
          R"("budget":{"evaluations":12,"batch":2,"fidelity":"draft"},"seed":1})";
 }
 
