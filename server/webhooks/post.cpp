@@ -67,7 +67,9 @@ Posted post(const std::vector<std::string>& private_hosts,
   Gate gate{.any_address = std::ranges::find(private_hosts, target->host) != private_hosts.end()};
   std::unique_ptr<curl_slist, End> head;
   for (const auto& [name, value] : message.fields) {
-    head.reset(curl_slist_append(head.release(), (name + ": " + value).c_str()));
+    std::string line(name);
+    line.append(": ").append(value);
+    head.reset(curl_slist_append(head.release(), line.c_str()));
   }
   head.reset(curl_slist_append(head.release(), "Expect:"));
   std::size_t taken = 0;
