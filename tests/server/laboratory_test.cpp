@@ -56,6 +56,16 @@ std::size_t count(const std::string& text, const std::string& part) {
 
 }  // namespace
 
+TEST_CASE("every observable tells how far its draft readings are from standard ones", "[server]") {
+  for (const engine::ExperimentInfo& info : engine::experiment_catalogue()) {
+    for (const engine::ObservableInfo& observable : info.observables) {
+      INFO(info.name << "." << observable.name);
+      CHECK(draft_bias(info, observable).sets >= 12);
+      CHECK_FALSE(draft_words(info, observable).empty());
+    }
+  }
+}
+
 TEST_CASE("the bias of a draft is over the grains that were read at both fidelities", "[server]") {
   FidelityPairs pairs;
   pairs.readings = {{3.0, 1.0}, {none, 1.0}, {5.0, 1.0}, {4.0, none}};
