@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <string_view>
 
 #include "server/report/number_text.hpp"
@@ -13,31 +14,30 @@ namespace {
 
 /// In the observable's printed unit.
 struct Measured {
-  std::string_view experiment, observable;
+  std::string_view observable;  ///< experiment.observable
   double mean, deviation;
   int sets;
 };
 
 // What `repose bench fidelity` prints; to be measured anew when a draft's settings change.
 constexpr std::array<Measured, 10> measured{{
-    {"drop", "restitution", 0.0, 0.0, 12},
-    {"kettle", "bulk_density", -10.8, 2.3, 12},
-    {"tilting_box", "static_angle", 1.02, 0.97, 12},
-    {"tilting_box", "onset_angle", 0.603, 1.1, 12},
-    {"heap", "heap_angle", -2.09, 2.6, 12},
-    {"draw_down", "discharge_rate", -1.75, 0.34, 12},
-    {"draw_down", "drain_angle", -2.29, 3.8, 12},
-    {"drum", "dynamic_angle", 1.72, 1.2, 12},
-    {"compression", "secant_modulus", -0.00616, 0.0065, 12},
-    {"compression", "residual_strain_ratio", 0.00187, 0.018, 12},
+    {"drop.restitution", 0.0, 0.0, 12},
+    {"kettle.bulk_density", -10.8, 2.3, 12},
+    {"tilting_box.static_angle", 1.02, 0.97, 12},
+    {"tilting_box.onset_angle", 0.603, 1.1, 12},
+    {"heap.heap_angle", -2.09, 2.6, 12},
+    {"draw_down.discharge_rate", -1.75, 0.34, 12},
+    {"draw_down.drain_angle", -2.29, 3.8, 12},
+    {"drum.dynamic_angle", 1.72, 1.2, 12},
+    {"compression.secant_modulus", -0.00616, 0.0065, 12},
+    {"compression.residual_strain_ratio", 0.00187, 0.018, 12},
 }};
 
 }  // namespace
 
 DraftBias draft_bias(const engine::ExperimentInfo& info, const engine::ObservableInfo& observable) {
-  const auto found = std::ranges::find_if(measured, [&](const Measured& each) {
-    return each.experiment == info.name && each.observable == observable.name;
-  });
+  const std::string name = std::string(info.name) + '.' + std::string(observable.name);
+  const auto found = std::ranges::find(measured, name, &Measured::observable);
   if (found == measured.end()) return {};
   const double factor = observable.unit.factor;
   return {found->mean * factor, found->deviation * factor, found->sets};
