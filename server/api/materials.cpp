@@ -1,17 +1,8 @@
 #include "server/api/handlers.hpp"
-#include "server/api/problem.hpp"
+#include "server/api/reply.hpp"
 #include "server/service.hpp"
 
 namespace repose::server::handlers {
-
-namespace {
-
-Reply reply_of(const Answer<std::string>& answer) {
-  if (!answer) return problem_reply(answer.error());
-  return {.status = 200, .body = *answer};
-}
-
-}  // namespace
 
 Reply list_materials(Service& service, const Request& /*request*/) {
   return {.status = 200, .body = service.materials()};

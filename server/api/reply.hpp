@@ -10,7 +10,10 @@
 namespace repose::server {
 
 /// The document with that status, or the refusal as a problem.
-Reply reply_of(const Answer<std::string>& answer, int status);
+Reply reply_of(const Answer<std::string>& answer, int status = 200);
+
+/// 201: made. The document's number is the last segment of its address.
+Reply created(const Answer<std::string>& answer, std::string_view collection);
 
 /// 202: taken on. The document's number is the last segment of its address, where it can be asked
 /// for, in a few seconds at the soonest.

@@ -1,30 +1,12 @@
-#include <string>
-
 #include "server/api/handlers.hpp"
-#include "server/api/problem.hpp"
 #include "server/api/query.hpp"
-#include "server/json/text.hpp"
+#include "server/api/reply.hpp"
 #include "server/service.hpp"
 
 namespace repose::server::handlers {
 
-namespace {
-
-Reply reply_of(const Answer<std::string>& answer, int status = 200) {
-  if (!answer) return problem_reply(answer.error());
-  return {.status = status, .body = *answer};
-}
-
-}  // namespace
-
 Reply add_schedule(Service& service, const Request& request) {
-  const auto answer = service.add_schedule(request.body);
-  Reply reply = reply_of(answer, 201);
-  if (!answer) return reply;
-  if (const auto id = whole_member(*answer, "id")) {
-    reply.headers.emplace_back("Location", "/v1/schedules/" + std::to_string(*id));
-  }
-  return reply;
+  return created(service.add_schedule(request.body), "/v1/schedules");
 }
 
 Reply list_schedules(Service& service, const Request& /*request*/) {
