@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "server/cli/commands.hpp"
+#include "server/cli/input.hpp"
 #include "server/cli/laboratory_options.hpp"
 
 namespace repose::server {
@@ -16,6 +17,17 @@ using Work = std::function<int()>;
 
 CLI::Option* add_database(CLI::App& command, std::filesystem::path& database);
 void add_json(CLI::App& command, Form& form, const char* what);
+
+/// The command does that, with the usual database where none is named.
+template <class Options>
+void does(CLI::App& command, Options& options, int (*run)(const Options&), Work& work) {
+  command.callback([&options, &work, run] {
+    work = [&options, run] {
+      if (options.database.empty()) options.database = default_database();
+      return run(options);
+    };
+  });
+}
 
 void add_export(CLI::App& app, ExportCommand& options, Work& work);
 void add_store(CLI::App& app, StoreCommand& options, Work& work);

@@ -4,7 +4,6 @@
 #include "calibrator/calibration.hpp"
 #include "engine/catalogue.hpp"
 #include "server/cli/arguments.hpp"
-#include "server/cli/input.hpp"
 
 namespace repose::server {
 
@@ -72,12 +71,7 @@ void add_bench_effects(CLI::App& bench, BenchEffectsCommand& options, Work& work
       ->capture_default_str()
       ->check(CLI::Range(1, 4096));
   add_json(command, options.form, "JSON on standard output");
-  command.callback([&] {
-    work = [&] {
-      if (options.database.empty()) options.database = default_database();
-      return bench_effects_command(options);
-    };
-  });
+  does(command, options, bench_effects_command, work);
 }
 
 }  // namespace
@@ -137,12 +131,7 @@ void add_study(CLI::App& app, StudyCommand& options, Work& work) {
       ->check(CLI::Range(1, 4096));
   add_json(command, options.form, "The result on standard output");
   command.footer(study_footer);
-  command.callback([&] {
-    work = [&] {
-      if (options.database.empty()) options.database = default_database();
-      return study_command(options);
-    };
-  });
+  does(command, options, study_command, work);
 }
 
 }  // namespace repose::server

@@ -1,6 +1,5 @@
 // The commands of calibrations.
 #include "server/cli/arguments.hpp"
-#include "server/cli/input.hpp"
 
 namespace repose::server {
 
@@ -28,12 +27,7 @@ void add_calibrate(CLI::App& app, CalibrateCommand& options, Work& work) {
       "Do not run the best set once more for the report's pictures");
   add_json(command, options.form, "The calibration's document on standard output");
   command.footer(calibrate_footer);
-  command.callback([&] {
-    work = [&] {
-      if (options.database.empty()) options.database = default_database();
-      return calibrate_command(options);
-    };
-  });
+  does(command, options, calibrate_command, work);
 }
 
 void add_missing_effect(CLI::App& app, MissingEffectCommand& options, Work& work) {
@@ -43,12 +37,7 @@ void add_missing_effect(CLI::App& app, MissingEffectCommand& options, Work& work
         command.add_option("id", options.id, "Calibration")->required();
         add_database(command, options.database);
         add_json(command, options.form, "One JSON object on standard output");
-        command.callback([&, run] {
-          work = [&, run] {
-            if (options.database.empty()) options.database = default_database();
-            return run(options);
-          };
-        });
+        does(command, options, run, work);
         return &command;
       };
   const auto add_tolerance = [&](CLI::App& command) {
@@ -87,12 +76,7 @@ void add_lineage(CLI::App& app, LineageCommand& options, Work& work) {
   command.add_option("--report", options.report, "Write their HTML report there")
       ->type_name("FILE");
   add_json(command, options.form, "One JSON object on standard output");
-  command.callback([&] {
-    work = [&] {
-      if (options.database.empty()) options.database = default_database();
-      return lineage_command(options);
-    };
-  });
+  does(command, options, lineage_command, work);
 }
 
 void add_report(CLI::App& app, ReportCommand& options, Work& work) {
@@ -105,12 +89,7 @@ void add_report(CLI::App& app, ReportCommand& options, Work& work) {
       "--no-pictures",
       [&options] { options.pictures = false; },
       "Do not run the best set once more for the report's pictures");
-  command.callback([&] {
-    work = [&] {
-      if (options.database.empty()) options.database = default_database();
-      return report_command(options);
-    };
-  });
+  does(command, options, report_command, work);
 }
 
 void add_list(CLI::App& app, ListCommand& options, Work& work) {
@@ -120,12 +99,7 @@ void add_list(CLI::App& app, ListCommand& options, Work& work) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   add_json(command, options.form, "One JSON object on standard output");
-  command.callback([&] {
-    work = [&] {
-      if (options.database.empty()) options.database = default_database();
-      return list_command(options);
-    };
-  });
+  does(command, options, list_command, work);
 }
 
 void add_show(CLI::App& app, ShowCommand& options, Work& work) {
@@ -133,12 +107,7 @@ void add_show(CLI::App& app, ShowCommand& options, Work& work) {
   command.add_option("id", options.id, "Calibration")->required();
   add_database(command, options.database);
   add_json(command, options.form, "The calibration's document on standard output");
-  command.callback([&] {
-    work = [&] {
-      if (options.database.empty()) options.database = default_database();
-      return show_command(options);
-    };
-  });
+  does(command, options, show_command, work);
 }
 
 }  // namespace repose::server

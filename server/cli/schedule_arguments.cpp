@@ -1,5 +1,4 @@
 #include "server/cli/arguments.hpp"
-#include "server/cli/input.hpp"
 
 namespace repose::server {
 
@@ -11,12 +10,7 @@ void add_schedule(CLI::App& app, ScheduleCommand& options, Work& work) {
     CLI::App& command = *group.add_subcommand(name, what);
     add_database(command, options.database);
     add_json(command, options.form, "One JSON object on standard output");
-    command.callback([&, run] {
-      work = [&, run] {
-        if (options.database.empty()) options.database = default_database();
-        return run(options);
-      };
-    });
+    does(command, options, run, work);
     return command;
   };
   CLI::App& make = add("add", "Add a schedule, or replace one", schedule_add_command);
@@ -66,12 +60,7 @@ void add_nightly(CLI::App& app, ScheduleCommand& options, Work& work) {
   command.footer(
       "Not beside a running `repose serve`, which runs its nights itself: they would want the\n"
       "same database. server/deploy/ has a unit and a timer.");
-  command.callback([&] {
-    work = [&] {
-      if (options.database.empty()) options.database = default_database();
-      return nightly_command(options);
-    };
-  });
+  does(command, options, nightly_command, work);
 }
 
 }  // namespace repose::server

@@ -1,6 +1,5 @@
 // The commands of the service.
 #include "server/cli/arguments.hpp"
-#include "server/cli/input.hpp"
 
 namespace repose::server {
 
@@ -32,12 +31,7 @@ void add_serve(CLI::App& app, ServeCommand& options, Work& work) {
       .add_option("--memory-limit", options.memory_limit, "GiB for the process of an evaluation")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 1e4));
-  command.callback([&] {
-    work = [&] {
-      if (options.database.empty()) options.database = default_database();
-      return serve_command(options);
-    };
-  });
+  does(command, options, serve_command, work);
 }
 
 void add_token(CLI::App& app, TokenCommand& options, Work& work) {
@@ -47,12 +41,7 @@ void add_token(CLI::App& app, TokenCommand& options, Work& work) {
   const auto add = [&](const char* name, const char* what, int (*run)(const TokenCommand&)) {
     CLI::App& command = *token.add_subcommand(name, what);
     add_database(command, options.database);
-    command.callback([&, run] {
-      work = [&, run] {
-        if (options.database.empty()) options.database = default_database();
-        return run(options);
-      };
-    });
+    does(command, options, run, work);
     return &command;
   };
   CLI::App& create = *add("create", "Make a token; it is shown this once", create_token_command);

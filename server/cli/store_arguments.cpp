@@ -1,5 +1,4 @@
 #include "server/cli/arguments.hpp"
-#include "server/cli/input.hpp"
 #include "server/exports/export.hpp"
 
 namespace repose::server {
@@ -13,24 +12,14 @@ void add_export(CLI::App& app, ExportCommand& options, Work& work) {
       ->capture_default_str()
       ->check(CLI::IsMember(std::move(names)));
   command.footer("An input file runs as it is, and says at its top what it cannot say of the fit.");
-  command.callback([&] {
-    work = [&] {
-      if (options.database.empty()) options.database = default_database();
-      return export_command(options);
-    };
-  });
+  does(command, options, export_command, work);
 }
 
 void add_store(CLI::App& app, StoreCommand& options, Work& work) {
   const auto add = [&](const char* name, const char* what, int (*run)(const StoreCommand&)) {
     CLI::App& command = *app.add_subcommand(name, what);
     add_database(command, options.database);
-    command.callback([&, run] {
-      work = [&, run] {
-        if (options.database.empty()) options.database = default_database();
-        return run(options);
-      };
-    });
+    does(command, options, run, work);
     return &command;
   };
   add("backup", "Copy the database into one file, also while a service runs", backup_command)
