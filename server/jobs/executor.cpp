@@ -21,6 +21,7 @@ using engine::Evaluation;
 using engine::Failure;
 using engine::FailureKind;
 using engine::Trial;
+using engine::Unexpected;
 using End = Attempted::End;
 
 namespace {
@@ -50,16 +51,23 @@ End end_of(const ChildResult& child) {
   return child.exit_code == 0 ? End::answered : End::crashed;
 }
 
-/// Why an answer is not one to that question; empty where it is.
-std::string objection(const Question& question, const std::optional<AttemptAnswer>& answer) {
-  if (!answer) return "gave no answer that can be read";
-  if (answer->key != question.key) return "answered another question";
-  if (answer->attempt != question.attempt) return "answered in the name of another attempt";
-  if (answer->engine_version != engine::version()) return "answered with another engine";
-  if (is_of_the_host(parse_answer(question.trial, answer->answer))) {
-    return "gave an answer that cannot be read";
+/// The evaluation that answers the question, or why the text holds none.
+engine::Result<Evaluation, std::string> evaluation_in(const std::string& text,
+                                                      const Question& question) {
+  const auto answer = parse_attempt_answer(text);
+  if (!answer) return Unexpected{std::string("gave no answer that can be read")};
+  if (answer->key != question.key) return Unexpected{std::string("answered another question")};
+  if (answer->attempt != question.attempt) {
+    return Unexpected{std::string("answered in the name of another attempt")};
   }
-  return {};
+  if (answer->engine_version != engine::version()) {
+    return Unexpected{std::string("answered with another engine")};
+  }
+  Evaluation evaluation = parse_answer(question.trial, answer->answer);
+  if (is_of_the_host(evaluation)) {
+    return Unexpected{std::string("gave an answer that cannot be read")};
+  }
+  return evaluation;
 }
 
 /// Ends the attempt in the store; what it came to.
@@ -75,19 +83,17 @@ Attempts conclude(db::Store& store,
     return ran ? Attempts{how, {}, account} : Attempts{End::lost, {}, "was given up before"};
   };
   if (attempted.end != End::answered) return end(attempted.end, attempted.account);
-  const auto answer = parse_attempt_answer(attempted.answer);
-  const std::string why = objection(question, answer);
-  if (!why.empty()) return end(End::refused, why);
+  const auto evaluation = evaluation_in(attempted.answer, question);
+  if (!evaluation) return end(End::refused, evaluation.error());
   const std::int64_t now = microseconds_now();
-  const auto accepted =
-      attempts.accept(question.attempt,
-                      {.key = question.key,
-                       .question = print_trial(question.trial),
-                       .answer = print_answer(parse_answer(question.trial, answer->answer)),
-                       .seconds = seconds,
-                       .engine_version = std::string(engine::version()),
-                       .created_at = now},
-                      now);
+  const auto accepted = attempts.accept(question.attempt,
+                                        {.key = question.key,
+                                         .question = print_trial(question.trial),
+                                         .answer = print_answer(*evaluation),
+                                         .seconds = seconds,
+                                         .engine_version = std::string(engine::version()),
+                                         .created_at = now},
+                                        now);
   using Accepted = db::AttemptStore::Accepted;
   if (accepted == Accepted::too_late) return {End::lost, {}, "was given up before"};
   if (accepted == Accepted::other) {
