@@ -11,6 +11,11 @@ CLI::Option* add_database(CLI::App& command, std::filesystem::path& database) {
       ->type_name("FILE");
 }
 
+void add_workers(CLI::App& command, unsigned& workers) {
+  command.add_option("--workers", workers, "Evaluations at once (default: one a core)")
+      ->check(CLI::Range(1, 4096));
+}
+
 void add_json(CLI::App& command, Form& form, const char* what) {
   command.add_flag_callback(
       "--json", [&form] { form = Form::json; }, what);

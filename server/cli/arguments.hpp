@@ -16,6 +16,7 @@ namespace repose::server {
 using Work = std::function<int()>;
 
 CLI::Option* add_database(CLI::App& command, std::filesystem::path& database);
+void add_workers(CLI::App& command, unsigned& workers);
 void add_json(CLI::App& command, Form& form, const char* what);
 
 /// The command does that, with the usual database where none is named.

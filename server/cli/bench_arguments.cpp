@@ -67,9 +67,7 @@ void add_bench_effects(CLI::App& bench, BenchEffectsCommand& options, Work& work
       ->capture_default_str()
       ->check(CLI::Range(1, 100));
   add_database(command, options.database);
-  command.add_option("--workers", options.workers, "Evaluations at once")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 4096));
+  add_workers(command, options.workers);
   add_json(command, options.form, "JSON on standard output");
   does(command, options, bench_effects_command, work);
 }
@@ -127,8 +125,7 @@ void add_study(CLI::App& app, StudyCommand& options, Work& work) {
       ->type_name("FOLDER")
       ->default_str("the working folder");
   add_database(command, options.database);
-  command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
-      ->check(CLI::Range(1, 4096));
+  add_workers(command, options.workers);
   add_json(command, options.form, "The result on standard output");
   command.footer(study_footer);
   does(command, options, study_command, work);

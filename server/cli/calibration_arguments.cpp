@@ -17,8 +17,7 @@ void add_calibrate(CLI::App& app, CalibrateCommand& options, Work& work) {
       ->required()
       ->type_name("STUDY.json");
   add_database(command, options.database);
-  command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
-      ->check(CLI::Range(1, 4096));
+  add_workers(command, options.workers);
   command.add_option("--report", options.report, "Report (default: beside the database)")
       ->type_name("FILE");
   command.add_flag_callback(
@@ -49,19 +48,15 @@ void add_missing_effect(CLI::App& app, MissingEffectCommand& options, Work& work
         ->expected(1)
         ->take_all();
   };
-  const auto add_workers = [&](CLI::App& command) {
-    command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
-        ->check(CLI::Range(1, 4096));
-  };
   add_tolerance(
       *add("compare", "Where a calibrated model misses its measurements", compare_command));
   CLI::App& diagnose =
       *add("diagnose", "Which physical effect a calibrated model lacks", diagnose_command);
   add_tolerance(diagnose);
-  add_workers(diagnose);
+  add_workers(diagnose, options.workers);
   CLI::App& extend = *add("extend", "Add an effect to a model and calibrate it", extend_command);
   extend.add_option("--effect", options.effect, "Which; `repose diagnose` names them")->required();
-  add_workers(extend);
+  add_workers(extend, options.workers);
   extend.add_option("--report", options.report, "Report (default: beside the database)")
       ->type_name("FILE");
   extend.add_flag_callback(

@@ -170,7 +170,7 @@ struct BenchEffectsCommand {
   std::vector<std::string> experiments;  ///< which
   int seeds = 2;
   std::filesystem::path database;  ///< keeps the runs, so that it can be taken up again
-  unsigned workers = 1;
+  unsigned workers = 0;
   Form form = Form::text;
 };
 int bench_effects_command(const BenchEffectsCommand& command);

@@ -54,8 +54,7 @@ void add_nightly(CLI::App& app, ScheduleCommand& options, Work& work) {
       ->required();
   command.add_flag("--all", options.all, "A night of every schedule, due or not");
   add_database(command, options.database);
-  command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
-      ->check(CLI::Range(1, 4096));
+  add_workers(command, options.workers);
   add_json(command, options.form, "The schedules on standard output, with their last nights");
   command.footer(
       "Not beside a running `repose serve`, which runs its nights itself: they would want the\n"

@@ -14,8 +14,7 @@ void add_serve(CLI::App& app, ServeCommand& options, Work& work) {
       ->expected(1)
       ->take_all();
   add_database(command, options.database);
-  command.add_option("--workers", options.workers, "Evaluations at once (default: one a core)")
-      ->check(CLI::Range(1, 4096));
+  add_workers(command, options.workers);
   command
       .add_option("--webhook-host",
                   options.webhook_hosts,
