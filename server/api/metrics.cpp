@@ -20,6 +20,18 @@ void describe(std::string& page,
   page.append("# TYPE ").append(name).append(" ").append(kind).append("\n");
 }
 
+/// Counts by the one label of theirs, whose values are ours.
+template <class Counts>
+void counts_by(std::string& page,
+               std::string_view name,
+               std::string_view label,
+               const Counts& counts) {
+  for (const auto& [value, count] : counts) {
+    page.append(name).append("{").append(label).append("=\"").append(value).append("\"} ");
+    page.append(std::to_string(count)).append("\n");
+  }
+}
+
 void gauge(std::string& page, std::string_view name, std::string_view what, double value) {
   describe(page, name, "gauge", what);
   page.append(name).append(" ").append(number(value)).append("\n");
@@ -34,13 +46,9 @@ void print_service(std::string& page, const ServiceFigures& figures) {
   describe(page, "repose_build_info", "gauge", "The engine's version.");
   page += "repose_build_info{engine_version=\"" + figures.engine_version + "\"} 1\n";
   describe(page, "repose_calibrations", "gauge", "Calibrations by state.");
-  for (const auto& [state, count] : figures.jobs) {
-    page += "repose_calibrations{state=\"" + state + "\"} " + std::to_string(count) + "\n";
-  }
+  counts_by(page, "repose_calibrations", "state", figures.jobs);
   describe(page, "repose_attempts_total", "counter", "Attempts at evaluations by how they ended.");
-  for (const auto& [end, count] : figures.attempts) {
-    page += "repose_attempts_total{end=\"" + end + "\"} " + std::to_string(count) + "\n";
-  }
+  counts_by(page, "repose_attempts_total", "end", figures.attempts);
   counter(page,
           "repose_evaluations_total",
           "Evaluations in the store.",
@@ -95,9 +103,7 @@ void print_drift(std::string& page, const ServiceFigures& figures) {
 
 void print_webhooks(std::string& page, const db::WebhookFigures& figures) {
   describe(page, "repose_webhooks", "gauge", "Webhooks by state.");
-  for (const auto& [state, count] : figures.states) {
-    page += "repose_webhooks{state=\"" + state + "\"} " + std::to_string(count) + "\n";
-  }
+  counts_by(page, "repose_webhooks", "state", figures.states);
   gauge(page,
         "repose_webhook_deliveries",
         "Events that have arrived, of the webhooks there are.",
