@@ -27,10 +27,17 @@ import reading  # noqa: E402
 
 SPRING = "repose, rolling spring"
 LIKE_WITH_LIKE = [("repose", "liggghts"), (SPRING, "lammps")]
+# Each code's rolling law, here.
+LAWS = {"liggghts": "rolling_resistance", "lammps": "elastic_rolling_resistance"}
+
+
+def rolling_words(law, coefficient):
+    return [word for each in LAWS.values() for sides in ("grain-grain", "grain-wall") for word in
+            ("--set", f"{each}.coefficient:{sides}={coefficient if each == law else 0}")]
+
+
 # The reference grain's couple of 0.05 as a spring of the same cap.
-SPRING_WORDS = [word for sides in ("grain-grain", "grain-wall") for word in
-                ("--set", f"rolling_resistance.coefficient:{sides}=0",
-                 "--set", f"elastic_rolling_resistance.coefficient:{sides}=0.05")]
+SPRING_WORDS = rolling_words(LAWS["lammps"], 0.05)
 
 
 def settings(repose, scene, fidelity):

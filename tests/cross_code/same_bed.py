@@ -20,8 +20,6 @@ import apparatus
 import reading
 from scenes import write_bed, write_stl
 
-LAWS = {"liggghts": "rolling_resistance", "lammps": "elastic_rolling_resistance"}
-
 
 class FilledBox(apparatus.TiltingBox):
     settling = 0.3
@@ -43,15 +41,10 @@ class FilledBox(apparatus.TiltingBox):
         return super().struck_off(2 * level)  # done already
 
 
-def rolling_words(law, coefficient):
-    return [word for each in LAWS.values() for sides in ("grain-grain", "grain-wall") for word in
-            ("--set", f"{each}.coefficient:{sides}={coefficient if each == law else 0}")]
-
-
 def tilted_here(repose, law, asked, seed, folder):
     """The angles, and the centres of the grains when the box starts to turn."""
     words = [repose, "evaluate", "tilting_box", "--seed", seed, "--fidelity", asked.fidelity, "--json",
-             "--frames", folder, "--frame-interval", 1e6, *rolling_words(law, asked.rolling)]
+             "--frames", folder, "--frame-interval", 1e6, *compare.rolling_words(law, asked.rolling)]
     done = subprocess.run(list(map(str, words)), check=True, capture_output=True, text=True)
     angles = {o["name"]: o["value"] for o in json.loads(done.stdout)["observations"]}
     frames = reading.vtp_frames(folder)
@@ -71,7 +64,7 @@ def main():
     known = compare.settings(asked.repose, "tilting_box", asked.fidelity)
     print("| observable, same beds | repose less the other code: mean, its standard error | beds |")
     print("|---|---|---|")
-    for code, law in LAWS.items():
+    for code, law in compare.LAWS.items():
         program = getattr(asked, code)
         if not program:
             continue
