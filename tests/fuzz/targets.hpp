@@ -1,6 +1,6 @@
 /// What is thrown at the readers of everything that comes from outside, and what must hold whatever
 /// that is: no crash, and what was read and printed reads back as the same. Kept inputs
-/// are in corpus/TARGET/: what has found something goes there.
+/// are in each target's folder: what has found something goes there.
 #pragma once
 
 #include <array>
@@ -93,14 +93,15 @@ inline void fuzz_answer(std::string_view input) {
 }
 
 struct FuzzTarget {
-  std::string_view name;
+  std::string_view kept;  ///< the folder of its kept inputs
   void (*run)(std::string_view input);
 };
 
-inline constexpr std::array<FuzzTarget, 5> fuzz_targets{{{"study", fuzz_study},
-                                                         {"table", fuzz_table},
-                                                         {"cron", fuzz_cron},
-                                                         {"request", fuzz_request},
-                                                         {"answer", fuzz_answer}}};
+inline constexpr std::array<FuzzTarget, 5> fuzz_targets{
+    {{"schemas/examples", fuzz_study},
+     {"tests/fuzz/corpus/table", fuzz_table},
+     {"tests/fuzz/corpus/cron", fuzz_cron},
+     {"tests/fuzz/corpus/request", fuzz_request},
+     {"tests/fuzz/corpus/answer", fuzz_answer}}};
 
 }  // namespace repose::tests

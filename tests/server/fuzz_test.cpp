@@ -15,11 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 using namespace repose::tests;
 
-std::vector<std::string> corpus(std::string_view target) {
+std::vector<std::string> corpus(std::string_view folder) {
   std::vector<fs::path> paths;
-  for (const auto& entry :
-       fs::directory_iterator(fs::path(REPOSE_SOURCE_DIR "/tests/fuzz/corpus") / target)) {
-    paths.push_back(entry.path());
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(REPOSE_SOURCE_DIR) / folder)) {
+    if (entry.is_regular_file()) paths.push_back(entry.path());
   }
   std::ranges::sort(paths);
   std::vector<std::string> texts;
@@ -66,10 +65,10 @@ int rounds() {
 TEST_CASE("no input crashes a reader, and what it reads and prints is the same again", "[server]") {
   std::mt19937_64 random(20261129);
   for (const FuzzTarget& target : fuzz_targets) {
-    const auto kept = corpus(target.name);
+    const auto kept = corpus(target.kept);
     REQUIRE(kept.size() >= 3);
     for (const std::string& text : kept) {
-      INFO(target.name << ": " << text);
+      INFO(target.kept << ": " << text);
       CHECK_NOTHROW(target.run(text));
       for (int i = 0; i < rounds(); ++i) {
         const std::string near = changed(text, kept[random() % kept.size()], random);
