@@ -180,9 +180,14 @@ def main():
         time.sleep(0.05)
 
     memory = service.memory()
+    begin = time.perf_counter()
     before, used = service.worked_out(), service.processor_seconds()
     readers = pace(service, options.reads, options.seconds, read, 32)
     writers = pace(service, options.submits, options.seconds, submit, 8)
+    over_time = []  # MiB, at the end of each tenth
+    for tenth in range(1, 11):
+        time.sleep(max(0.0, begin + tenth * options.seconds / 10 - time.perf_counter()))
+        over_time.append(service.memory())
     for worker in readers[0] + writers[0]:
         worker.join()
     summary("reads", options.reads, *readers[1:])
@@ -196,7 +201,8 @@ def main():
     print(f"processor    {service.processor_seconds() - used:.1f} s by the service in "
           f"{options.seconds:.0f} s; load average {os.getloadavg()[0]:.1f}")
     print(f"streams      {options.streams} open, {min(events)} to {max(events)} events on each")
-    print(f"memory       {memory:.0f} MiB before, {service.memory():.0f} MiB after")
+    print(f"memory       {memory:.0f} MiB before, then by tenths of the time "
+          + " ".join(f"{each:.1f}" for each in over_time))
     service.stop()
     with sqlite3.connect(database) as store:
         kept = store.execute("SELECT count(*) FROM calibration").fetchone()[0] - 1
