@@ -1,7 +1,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <csignal>
 #include <exception>
 #include <iostream>
@@ -26,6 +25,7 @@
 #include "server/cli/text_table.hpp"
 #include "server/jobs/child.hpp"
 #include "server/jobs/team.hpp"
+#include "server/jobs/watch.hpp"
 #include "server/json/attempt_json.hpp"
 #include "server/json/evaluation_json.hpp"
 #include "server/json/place.hpp"
@@ -286,29 +286,6 @@ int evaluate_command(const EvaluateCommand& command) {
   return exit_code::done;
 }
 
-namespace {
-
-/// Tells whoever asked that this process works: see server/jobs/child.hpp.
-class SignsOfLife {
- public:
-  SignsOfLife() : thread_([](const std::stop_token& stop) { beat_until(stop); }) {}
-
- private:
-  static void beat_until(const std::stop_token& stop) {
-    std::mutex mutex;
-    std::condition_variable_any never;
-    std::unique_lock hold(mutex);
-    while (!stop.stop_requested()) {
-      std::cout << std::endl;
-      never.wait_for(hold, stop, std::chrono::duration<double>(beat), [] { return false; });
-    }
-  }
-
-  std::jthread thread_;
-};
-
-}  // namespace
-
 int answer_command() {
   // Whoever asked is gone: nobody will read the answer.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -318,9 +295,11 @@ int answer_command() {
   const auto question = parse_question(*text);
   if (!question) return report_error({"the question cannot be read", question.error()}, false);
   try {
-    std::optional<SignsOfLife> signs(std::in_place);
+    // Tells whoever asked that this process works.
+    std::optional<Watch> sign(
+        std::in_place, beat, [](const std::stop_token&) { std::cout << std::endl; });
     const std::string answer = print_answer(engine::evaluate(question->trial));
-    signs.reset();
+    sign.reset();
     std::cout << print_answer_to(*question, answer) << "\n";
   } catch (const std::bad_alloc&) {
     return out_of_memory_code;

@@ -15,6 +15,12 @@
 
 namespace repose::server {
 
+#ifdef REPOSE_SANITIZED
+const bool limits_memory = false;
+#else
+const bool limits_memory = true;
+#endif
+
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -88,13 +94,11 @@ void give(int to, const std::string& text) {
   }
 }
 
-/// From outside: what is started may be any program. Shadow memory of a sanitizer passes any limit.
-void limit_memory([[maybe_unused]] pid_t child, [[maybe_unused]] std::uint64_t bytes) {
-#ifndef REPOSE_SANITIZED
-  if (bytes == 0) return;
+/// From outside: what is started may be any program.
+void limit_memory(pid_t child, std::uint64_t bytes) {
+  if (!limits_memory || bytes == 0) return;
   const rlimit limit{bytes, bytes};
   prlimit(child, RLIMIT_AS, &limit, nullptr);  // fails only where the child has ended already
-#endif
 }
 
 /// How a process ended that was not left to its end.

@@ -2,9 +2,10 @@
 /// of memory costs one evaluation.
 ///
 /// The process reads a question to its end, and writes an answer. While it works it writes a line
-/// break every `beat` seconds, which JSON takes no notice of: one that falls silent is lost.
+/// break every `beat`, which JSON takes no notice of: one that falls silent is lost.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <stop_token>
@@ -12,9 +13,13 @@
 
 namespace repose::server {
 
-inline constexpr double beat = 2.0;  ///< s of wall time
+inline constexpr std::chrono::seconds beat{2};  ///< of wall time
 /// With which a process says that it was given no more memory (ENOMEM).
 inline constexpr int out_of_memory_code = 12;
+
+/// Whether ChildLimits::bytes is kept to: not under a sanitizer, whose shadow memory passes any
+/// limit.
+extern const bool limits_memory;
 
 /// What a process may take.
 struct ChildLimits {

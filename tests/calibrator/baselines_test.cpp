@@ -34,7 +34,8 @@ std::string name_of(Method method) {
 
 }  // namespace
 
-TEST_CASE("every baseline comes within one standard error of an easy minimum", "[calibrator]") {
+TEST_CASE("every baseline comes within one standard error of an easy minimum",
+          "[calibrator][slow]") {
   for (const Method method : baselines()) {
     INFO(name_of(method));
     const toy::Study study = study_for(method, 0.01);
@@ -50,7 +51,8 @@ TEST_CASE("every baseline comes within one standard error of an easy minimum", "
   }
 }
 
-TEST_CASE("a baseline keeps to its budget and is the same again, bit by bit", "[calibrator]") {
+TEST_CASE("a baseline keeps to its budget and is the same again, bit by bit",
+          "[calibrator][slow]") {
   for (const Method method : baselines()) {
     INFO(name_of(method));
     const toy::Study study = study_for(method, 0.5, 43);
@@ -84,7 +86,7 @@ TEST_CASE("a baseline that is cancelled stops asking and says its best so far", 
   }
 }
 
-TEST_CASE("a baseline survives runs that fail", "[calibrator]") {
+TEST_CASE("a baseline survives runs that fail", "[calibrator][slow]") {
   for (const Method method : baselines()) {
     INFO(name_of(method));
     toy::Study study = study_for(method, 0.1);

@@ -47,7 +47,7 @@ TEST_CASE("five parameters, two observables: solved within 40 evaluations", "[ca
   }
 }
 
-TEST_CASE("five parameters, six observables: solved within 40 evaluations", "[calibrator]") {
+TEST_CASE("five parameters, six observables: solved within 40 evaluations", "[calibrator][slow]") {
   const auto runs = over_seeds(5, [](auto seed) { return toy::granular(6, 0.5, seed, 60, 4); });
   CHECK(toy::quantile(runs, 0.5) <= 25);
   CHECK(toy::share_solved(runs, 40) >= 0.8);

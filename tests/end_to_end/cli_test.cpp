@@ -10,8 +10,11 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/program.hpp"
+
 namespace fs = std::filesystem;
 using Catch::Contains;
+using repose::tests::repose_program;
 
 namespace {
 
@@ -21,8 +24,8 @@ struct Ran {
 };
 
 /// Runs the program through the shell; standard error goes where `errors` says.
-Ran repose(const std::string& arguments, const std::string& errors = "/dev/null") {
-  const std::string command = "'" REPOSE_PROGRAM "' " + arguments + " 2>" + errors;
+Ran run(const std::string& arguments, const std::string& errors = "/dev/null") {
+  const std::string command = "'" + repose_program + "' " + arguments + " 2>" + errors;
   Ran ran;
   FILE* pipe = popen(command.c_str(), "r");
   REQUIRE(pipe != nullptr);
@@ -63,7 +66,7 @@ constexpr const char* small_study = R"({
 }  // namespace
 
 TEST_CASE("evaluate --json prints exactly one JSON object", "[end_to_end]") {
-  const Ran ran = repose("evaluate drop --fidelity draft --json");
+  const Ran ran = run("evaluate drop --fidelity draft --json");
   CHECK(ran.exit_code == 0);
   const auto json = nlohmann::json::parse(ran.output);  // throws where more than one follows
   CHECK(json.at("experiment") == "drop");
@@ -78,21 +81,21 @@ TEST_CASE("evaluate --json prints exactly one JSON object", "[end_to_end]") {
 
 TEST_CASE("a study that is not published is refused with those that are", "[end_to_end]") {
   const TemporaryFolder folder;
-  const Ran ran = repose("study boac2011 --db " + (folder.path / "a.db").string(), "&1");
+  const Ran ran = run("study boac2011 --db " + (folder.path / "a.db").string(), "&1");
   CHECK(ran.exit_code == 2);
   CHECK_THAT(ran.output, Contains("did you mean \"boac2010\"?"));
 }
 
 TEST_CASE("an experiment is explained with its drawing and settings", "[end_to_end]") {
-  const Ran ran = repose("explain heap");
+  const Ran ran = run("explain heap");
   CHECK(ran.exit_code == 0);
   CHECK_THAT(ran.output, Contains("disc_diameter") && Contains("heap_angle") && Contains("o o o"));
-  CHECK_THAT(repose("explain").output, Contains("kettle") && Contains("compression"));
+  CHECK_THAT(run("explain").output, Contains("kettle") && Contains("compression"));
 }
 
 TEST_CASE("the same evaluation gives the same bits", "[end_to_end]") {
   const auto observed = [] {
-    const Ran ran = repose("evaluate drop --fidelity draft --seed 5 --json");
+    const Ran ran = run("evaluate drop --fidelity draft --seed 5 --json");
     return nlohmann::json::parse(ran.output).at("observations").dump();
   };
   CHECK(observed() == observed());
@@ -100,13 +103,13 @@ TEST_CASE("the same evaluation gives the same bits", "[end_to_end]") {
 
 TEST_CASE("a parameter that is set changes what is observed", "[end_to_end]") {
   const Ran ran =
-      repose("evaluate drop --fidelity draft --json --set restitution.coefficient:grain-wall=0.3");
+      run("evaluate drop --fidelity draft --json --set restitution.coefficient:grain-wall=0.3");
   const auto json = nlohmann::json::parse(ran.output);
   CHECK(json.at("observations").at(0).at("value").get<double>() == Approx(0.3).margin(0.02));
 }
 
 TEST_CASE("an experiment that fails is a failure in JSON and exit code 1", "[end_to_end]") {
-  const Ran ran = repose("evaluate kettle --fidelity draft --json --setting diameter=10mm");
+  const Ran ran = run("evaluate kettle --fidelity draft --json --setting diameter=10mm");
   CHECK(ran.exit_code == 1);
   const auto json = nlohmann::json::parse(ran.output);
   CHECK(json.at("failure").at("kind") == "bad_input");
@@ -123,10 +126,10 @@ TEST_CASE("bad usage is exit code 2 with a sentence on standard error", "[end_to
                             "calibrate /nowhere/study.json",
                             "fly"}) {
     INFO(words);
-    const Ran silent = repose(words);
+    const Ran silent = run(words);
     CHECK(silent.exit_code == 2);
     CHECK(silent.output.empty());
-    CHECK_THAT(repose(words, "&1").output, Contains("repose: "));
+    CHECK_THAT(run(words, "&1").output, Contains("repose: "));
   }
 }
 
@@ -135,24 +138,24 @@ TEST_CASE("a file or address that cannot be used is exit code 2 and says why", "
   const std::string file = (folder.path / "no_database.db").string();
   std::ofstream(file)
       << "rubbish, long enough to be no header of a database at all, not even nearly so\n";
-  const Ran rubbish = repose(
-      "calibrate '" REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json' --db " + file,
-      "&1");
+  const Ran rubbish =
+      run("calibrate '" REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json' --db " + file,
+          "&1");
   CHECK(rubbish.exit_code == 2);
   CHECK_THAT(rubbish.output, Contains(file));
   const std::string database = (folder.path / "a.db").string();
   const std::string serve = "serve --host 192.0.2.1 --db " + database;
-  const Ran open = repose(serve, "&1");
+  const Ran open = run(serve, "&1");
   CHECK(open.exit_code == 2);
   CHECK_THAT(open.output, Contains("there are no tokens yet") && Contains("repose token create"));
-  REQUIRE(repose("token create any --scope submit --db " + database).exit_code == 0);
-  const Ran address = repose(serve, "&1");
+  REQUIRE(run("token create any --scope submit --db " + database).exit_code == 0);
+  const Ran address = run(serve, "&1");
   CHECK(address.exit_code == 2);
   CHECK_THAT(address.output, Contains("cannot listen on 192.0.2.1") && Contains("--port"));
 }
 
 TEST_CASE("the engine's speed is measured and told as one JSON object", "[end_to_end]") {
-  const Ran ran = repose("bench engine --scene static --grains 300 --rounds 2 --json");
+  const Ran ran = run("bench engine --scene static --grains 300 --rounds 2 --json");
   CHECK(ran.exit_code == 0);
   const auto scenes = nlohmann::json::parse(ran.output)["scenes"];
   REQUIRE(scenes.size() == 1);
@@ -160,12 +163,12 @@ TEST_CASE("the engine's speed is measured and told as one JSON object", "[end_to
   CHECK(scenes[0]["grains"] == 300);
   CHECK(scenes[0]["contacts_per_grain"] > 1.5);
   CHECK(scenes[0]["slowest"] <= scenes[0]["particle_steps_per_second"]);
-  CHECK(repose("bench engine --scene static --grains 7001").exit_code == 2);
-  CHECK(repose("bench engine --scene silo").exit_code == 2);
+  CHECK(run("bench engine --scene static --grains 7001").exit_code == 2);
+  CHECK(run("bench engine --scene silo").exit_code == 2);
 }
 
 TEST_CASE("the calibrator's need is told as JSON beside that of a baseline", "[end_to_end]") {
-  const Ran ran = repose("bench calibrator --case A --seeds 1 --methods repose,isres --json");
+  const Ran ran = run("bench calibrator --case A --seeds 1 --methods repose,isres --json");
   CHECK(ran.exit_code == 0);
   const auto answer = nlohmann::json::parse(ran.output);
   CHECK(answer["case"] == "A");
@@ -175,23 +178,23 @@ TEST_CASE("the calibrator's need is told as JSON beside that of a baseline", "[e
   CHECK(answer["methods"][0]["p90"] == answer["methods"][0]["median"]);
   CHECK(answer["methods"][0]["share_within_40"] == 1.0);
   CHECK(answer["methods"][1]["name"] == "isres");
-  const Ran two = repose("bench calibrator --case A --case D --seeds 1 --methods bobyqa --json");
+  const Ran two = run("bench calibrator --case A --case D --seeds 1 --methods bobyqa --json");
   const auto list = nlohmann::json::parse(two.output);
   REQUIRE(list.size() == 2);
   CHECK(list[1]["methods"][0]["median"].is_null());  // eight parameters: never within 400
-  CHECK(repose("bench calibrator --case F").exit_code == 2);
-  CHECK(repose("bench calibrator --methods powell").exit_code == 2);
+  CHECK(run("bench calibrator --case F").exit_code == 2);
+  CHECK(run("bench calibrator --methods powell").exit_code == 2);
 }
 
 TEST_CASE("help and version are no errors", "[end_to_end]") {
-  CHECK(repose("--help").exit_code == 0);
-  CHECK(repose("evaluate --help").exit_code == 0);
-  CHECK_THAT(repose("--version").output, Contains("repose 0."));
+  CHECK(run("--help").exit_code == 0);
+  CHECK(run("evaluate --help").exit_code == 0);
+  CHECK_THAT(run("--version").output, Contains("repose 0."));
 }
 
 TEST_CASE("frames are written with an index", "[end_to_end]") {
   const TemporaryFolder folder;
-  const Ran ran = repose("evaluate drop --fidelity draft --json --frames " + folder.path.string());
+  const Ran ran = run("evaluate drop --fidelity draft --json --frames " + folder.path.string());
   CHECK(ran.exit_code == 0);
   CHECK(fs::exists(folder.path / "frames.pvd"));
   CHECK(fs::exists(folder.path / "frame_00000.vtp"));
@@ -202,20 +205,20 @@ TEST_CASE("a study is calibrated, listed, shown and reported", "[end_to_end][slo
   const std::string study = (folder.path / "study.json").string();
   const std::string database = " --db " + (folder.path / "repose.db").string();
   std::ofstream(study) << small_study;
-  const Ran calibrated = repose("calibrate " + study + database);
+  const Ran calibrated = run("calibrate " + study + database);
   INFO(calibrated.output);
   CHECK(calibrated.exit_code == 0);
   CHECK_THAT(calibrated.output, Contains("The measurement is met within"));
   CHECK_THAT(calibrated.output, Contains("restitution.coefficient:grain-wall"));
   CHECK(fs::exists(folder.path / "repose-report-1.html"));
 
-  CHECK_THAT(repose("list" + database).output, Contains("drop on a plate"));
-  CHECK(nlohmann::json::parse(repose("show 1 --json" + database).output).at("state").is_string());
+  CHECK_THAT(run("list" + database).output, Contains("drop on a plate"));
+  CHECK(nlohmann::json::parse(run("show 1 --json" + database).output).at("state").is_string());
   const std::string report = (folder.path / "r.html").string();
-  CHECK(repose("report 1 --no-pictures --output " + report + database).exit_code == 0);
+  CHECK(run("report 1 --no-pictures --output " + report + database).exit_code == 0);
   CHECK(fs::file_size(report) > 10000);
 
-  const Ran again = repose("calibrate " + study + database + " --json --no-pictures");
+  const Ran again = run("calibrate " + study + database + " --json --no-pictures");
   CHECK(again.exit_code == 0);
   CHECK(nlohmann::json::parse(again.output).contains("fit"));
 }

@@ -3,11 +3,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/program.hpp"
+
 TEST_CASE("a user's day goes as its transcript expects", "[end_to_end][slow]") {
   if (std::system("command -v curl > /dev/null") != 0) {
     WARN("curl is not installed: not tried");
     return;
   }
-  CHECK(std::system("'" REPOSE_SOURCE_DIR "/tests/end_to_end/day.sh' '" REPOSE_PROGRAM
-                    "' > /dev/null") == 0);
+  const std::string day = "'" REPOSE_SOURCE_DIR "/tests/end_to_end/day.sh' '";
+  CHECK(std::system((day + repose::tests::repose_program + "' > /dev/null").c_str()) == 0);
 }

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/program.hpp"
 #include "tests/support/served.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -78,6 +79,6 @@ TEST_CASE("a disk that fails to sync costs answers, but no acknowledged job and 
   CHECK(done == jobs);
   served.end(SIGTERM);
   const std::string doctor =
-      "'" REPOSE_PROGRAM "' doctor --db " + (folder / "a.db").string() + " > /dev/null";
+      "'" + repose_program + "' doctor --db " + (folder / "a.db").string() + " > /dev/null";
   CHECK(std::system(doctor.c_str()) == 0);
 }

@@ -17,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "db/sqlite.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/served.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -146,7 +147,7 @@ TEST_CASE("what was acknowledged is there once, whenever the service is killed",
   repose::db::Connection store(database, repose::db::Connection::Mode::read);
   CHECK(number_of(store, "SELECT count(*) FROM calibration") == keys);
   CHECK(number_of(store, "SELECT max(id) - count(*) FROM event") == 0);
-  CHECK(std::system(("'" REPOSE_PROGRAM "' doctor --db " + database + " > /dev/null").c_str()) ==
-        0);
+  CHECK(std::system(
+            ("'" + repose_program + "' doctor --db " + database + " > /dev/null").c_str()) == 0);
   WARN(kills() << " kills, " << keys << " acknowledged");
 }

@@ -11,8 +11,10 @@
 #include <catch2/catch.hpp>
 
 #include "server/json/report_json.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
+using repose::tests::repose_program;
 using repose::tests::TemporaryFolder;
 
 namespace {
@@ -41,7 +43,7 @@ std::filesystem::path slow_study(const TemporaryFolder& folder) {
 pid_t start(const std::filesystem::path& study,
             const std::filesystem::path& database,
             const std::filesystem::path& output) {
-  std::string command = "exec '" REPOSE_PROGRAM "' calibrate " + study.string() + " --db " +
+  std::string command = "exec '" + repose_program + "' calibrate " + study.string() + " --db " +
                         database.string() + " --no-pictures --json > " + output.string() +
                         " 2>/dev/null";
   std::string shell = "/bin/sh", flag = "-c";

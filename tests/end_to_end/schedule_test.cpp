@@ -9,17 +9,19 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using Catch::Contains;
 using Json = nlohmann::json;
+using repose::tests::repose_program;
 using repose::tests::TemporaryFolder;
 
 namespace {
 
 /// Runs the program through the shell; its output, and its exit code at the end.
 std::string run(const std::string& arguments, int wanted = 0) {
-  const std::string command = "'" REPOSE_PROGRAM "' " + arguments + " 2>&1";
+  const std::string command = "'" + repose_program + "' " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   REQUIRE(pipe != nullptr);
   std::array<char, 4096> buffer{};

@@ -9,6 +9,7 @@
 #include "server/json/calibration_json.hpp"
 #include "server/json/schemas.hpp"
 #include "tests/schemas/schema_check.hpp"
+#include "tests/support/program.hpp"
 
 namespace {
 
@@ -39,7 +40,7 @@ Json generated(const std::string& name) {
 TEST_CASE("the generated files are those that the program would write", "[schemas]") {
   std::set<std::string> names;
   for (const auto& [path, text] : repose::server::generated_schemas()) {
-    INFO("renew them: " << REPOSE_PROGRAM << " schema --write " << folder.string());
+    INFO("renew them: " << repose::tests::repose_program << " schema --write " << folder.string());
     names.insert(fs::path(path).filename());
     const bool same = read(folder / path) == text;
     CHECK(same);

@@ -5,11 +5,13 @@
 #include <catch2/catch.hpp>
 
 #include "server/json/evaluation_json.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/reference_grain.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace repose;
 using namespace repose::server;
+using repose::tests::repose_program;
 using repose::tests::TemporaryFolder;
 
 namespace {
@@ -89,7 +91,7 @@ TEST_CASE("the answer of a process is that of this process, bit for bit", "[serv
   db::Store two(folder / "two.db", db::Access::write);
   const std::vector trials{drop(0.3)};
   const auto here = Workers(one, {.workers = 1}).run(trials, {}, {});
-  const auto there = Workers(two, {.workers = 1, .program = REPOSE_PROGRAM}).run(trials, {}, {});
+  const auto there = Workers(two, {.workers = 1, .program = repose_program}).run(trials, {}, {});
   CHECK(restitution(here[0]) == restitution(there[0]));
   CHECK(here[0].effort.steps == there[0].effort.steps);
 }
@@ -162,7 +164,7 @@ TEST_CASE("a process that dies once is asked once more", "[server]") {
   db::Store store(folder / "a.db", db::Access::write);
   const auto program =
       script(folder,
-             "if [ -e " + (folder / "been").string() + " ]; then exec '" REPOSE_PROGRAM "'" +
+             "if [ -e " + (folder / "been").string() + " ]; then exec '" + repose_program + "'" +
                  " answer; fi\n: > " + (folder / "been").string() + "\nkill -KILL $$");
   const auto evaluations =
       Workers(store, impatient(program, 10)).run(std::vector{drop(0.1)}, {}, {});

@@ -14,6 +14,8 @@
 
 #include <httplib.h>
 
+#include "tests/support/program.hpp"
+
 namespace repose::tests {
 
 class Served {
@@ -37,7 +39,8 @@ class Served {
       const int nothing = open("/dev/null", O_WRONLY);
       dup2(nothing, STDERR_FILENO);
       std::vector<std::string> words = before_;
-      for (const char* word : {REPOSE_PROGRAM, "serve", "--port", "0", "--workers", "2", "--db"}) {
+      for (const char* word :
+           {repose_program.c_str(), "serve", "--port", "0", "--workers", "2", "--db"}) {
         words.emplace_back(word);
       }
       words.push_back(database_);
