@@ -63,7 +63,7 @@ Json table_json(const StudyResult& result, const StudyTable& table) {
     trends[what.experiment] = {{"agree", count.agree},
                                {"opposite", count.opposite},
                                {"clear_agree", count.clear_agree},
-                               {"clear_opposite", count.clear_opposite}};
+                               {"clearly_opposite", count.clearly_opposite}};
   }
   return {{"table", table.table},
           {"title", table.title},

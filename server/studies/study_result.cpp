@@ -83,7 +83,12 @@ TrendCount count_trends(const StudyResult& result,
       const Trend here = trend(result, run, experiment);
       if (!here.agrees) continue;
       ++(*here.agrees ? count.agree : count.opposite);
-      if (here.clear()) ++(*here.agrees ? count.clear_agree : count.clear_opposite);
+      if (!here.clear()) continue;
+      if (*here.agrees) {
+        ++count.clear_agree;
+      } else {
+        count.clearly_opposite.push_back(run);
+      }
     }
   }
   return count;

@@ -49,7 +49,8 @@ struct Trend {
 /// Counts of trends.
 struct TrendCount {
   int agree = 0, opposite = 0;
-  int clear_agree = 0, clear_opposite = 0;  ///< of these, those that are clear in both
+  int clear_agree = 0;                        ///< of these, those that are clear in both
+  std::vector<std::string> clearly_opposite;  ///< runs that are opposite, and clear in both
 };
 
 struct VariantResult {

@@ -96,7 +96,7 @@ TEST_CASE("a trend agrees where the change has the paper's sign, clearly where b
   CHECK(down.agrees == false);
   const TrendCount count = count_trends(result, study.tables[0], study.experiments[0]);
   CHECK(count.opposite == 1);
-  CHECK(count.clear_opposite == 1);
+  CHECK(count.clearly_opposite == std::vector<std::string>{"2"});
   CHECK(count.agree == 0);
   CHECK_FALSE(trend_of({0.4, 0.5}, {}).agrees.has_value());
   CHECK_FALSE(trend(result, "1", study.experiments[0]).agrees.has_value());
