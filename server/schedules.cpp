@@ -141,10 +141,10 @@ std::string schedules(db::Store& store, std::int64_t now) {
   return print_standings(standings);
 }
 
-Answer<std::string> nights(db::Store& store,
-                           std::int64_t id,
-                           int limit,
-                           std::optional<std::int64_t> before) {
+Answer<Page> nights(db::Store& store,
+                    std::int64_t id,
+                    int limit,
+                    std::optional<std::int64_t> before) {
   const ScheduleStore schedules(store);
   if (!schedules.schedule(id)) return Unexpected{not_found(id)};
   return print_nights(schedules.nights(id, limit, before), limit);

@@ -29,10 +29,10 @@ Answer<std::string> schedule(db::Store& store, std::int64_t id, std::int64_t now
 /// {"items":[...without study and fit...]}
 std::string schedules(db::Store& store, std::int64_t now);
 /// {"items","next"}, newest first.
-Answer<std::string> nights(db::Store& store,
-                           std::int64_t id,
-                           int limit,
-                           std::optional<std::int64_t> before);
+Answer<Page> nights(db::Store& store,
+                    std::int64_t id,
+                    int limit,
+                    std::optional<std::int64_t> before);
 
 /// Where the charts of all schedules stand.
 std::vector<DriftFigure> drift_figures(const db::Store& store);

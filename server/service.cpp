@@ -98,13 +98,13 @@ Answer<std::string> Service::calibration(std::int64_t id) const {
   return print_job(*record);
 }
 
-std::string Service::calibrations(int limit, std::optional<std::int64_t> before) const {
+Page Service::calibrations(int limit, std::optional<std::int64_t> before) const {
   return print_jobs(state_->store.calibrations(limit, before), limit);
 }
 
-Answer<std::string> Service::evaluations(std::int64_t calibration,
-                                         int limit,
-                                         std::optional<std::int64_t> after) const {
+Answer<Page> Service::evaluations(std::int64_t calibration,
+                                  int limit,
+                                  std::optional<std::int64_t> after) const {
   if (!state_->store.calibration(calibration)) return Unexpected{not_found(calibration)};
   return print_used(state_->store.used(calibration, limit, after), limit);
 }
@@ -234,9 +234,9 @@ Answer<std::string> Service::schedule(std::int64_t id) const {
 
 std::string Service::schedules() const { return server::schedules(state_->store, state_->clock()); }
 
-Answer<std::string> Service::nights(std::int64_t schedule,
-                                    int limit,
-                                    std::optional<std::int64_t> before) const {
+Answer<Page> Service::nights(std::int64_t schedule,
+                             int limit,
+                             std::optional<std::int64_t> before) const {
   return server::nights(state_->store, schedule, limit, before);
 }
 
@@ -297,17 +297,17 @@ Answer<std::string> Service::measurement_set(const std::string& name,
   return server::measurement_set(state_->store, name, version, as_table);
 }
 
-std::string Service::measurement_sets(int limit, const std::optional<std::string>& after) const {
+Page Service::measurement_sets(int limit, const std::optional<std::string>& after) const {
   return print_measurement_sets(db::MeasurementStore(state_->store).list(limit, after), limit);
 }
 
-std::string Service::fits(const db::FitFilter& filter, int limit) const {
+Page Service::fits(const db::FitFilter& filter, int limit) const {
   return print_fits(db::MeasurementStore(state_->store).fits(filter, limit), limit);
 }
 
-Answer<std::string> Service::events(const std::optional<std::int64_t>& calibration,
-                                    int limit,
-                                    std::int64_t after) const {
+Answer<Page> Service::events(const std::optional<std::int64_t>& calibration,
+                             int limit,
+                             std::int64_t after) const {
   if (calibration && !state_->store.calibration(*calibration)) {
     return Unexpected{not_found(*calibration)};
   }

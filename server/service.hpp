@@ -21,6 +21,7 @@
 #include "db/webhook_store.hpp"
 #include "engine/result.hpp"
 #include "server/jobs/clock.hpp"
+#include "server/json/page.hpp"
 #include "server/json/problem.hpp"
 
 namespace repose::server {
@@ -109,11 +110,11 @@ class Service {
   /// {"id","name","state","created_at","started_at","finished_at","study","progress","fit","error"}
   [[nodiscard]] Answer<std::string> calibration(std::int64_t id) const;
   /// {"items":[...without study and fit...],"next":cursor|null}, newest first
-  [[nodiscard]] std::string calibrations(int limit, std::optional<std::int64_t> before) const;
+  [[nodiscard]] Page calibrations(int limit, std::optional<std::int64_t> before) const;
   /// {"items":[{"key","ordinal","question","answer"}...],"next"}, in the order of work
-  [[nodiscard]] Answer<std::string> evaluations(std::int64_t calibration,
-                                                int limit,
-                                                std::optional<std::int64_t> after) const;
+  [[nodiscard]] Answer<Page> evaluations(std::int64_t calibration,
+                                         int limit,
+                                         std::optional<std::int64_t> after) const;
   /// {"items":[{"calibration","name","material","misfit","best",...}]}: the best finished fit of
   /// every study name, or of one.
   [[nodiscard]] std::string best_fits(const std::optional<std::string>& name) const;
@@ -158,17 +159,16 @@ class Service {
                                                     const std::optional<std::int64_t>& version,
                                                     bool as_table) const;
   /// {"items":[{"name","version","material","created_at"}],"next"}, the newest versions by name
-  [[nodiscard]] std::string measurement_sets(int limit,
-                                             const std::optional<std::string>& after) const;
+  [[nodiscard]] Page measurement_sets(int limit, const std::optional<std::string>& after) const;
   /// {"items":[{"calibration","parameters","not_determined","best","provenance",...}],"next"},
   /// newest first
-  [[nodiscard]] std::string fits(const db::FitFilter& filter, int limit) const;
+  [[nodiscard]] Page fits(const db::FitFilter& filter, int limit) const;
 
   // Events: what happened to a calibration, or to all, in order.
   /// {"items":[{"id","created_at","kind","data"}],"next"}, oldest first
-  [[nodiscard]] Answer<std::string> events(const std::optional<std::int64_t>& calibration,
-                                           int limit,
-                                           std::int64_t after) const;
+  [[nodiscard]] Answer<Page> events(const std::optional<std::int64_t>& calibration,
+                                    int limit,
+                                    std::int64_t after) const;
   /// A source of server-sent events from that number on, the latest where none is given; it lives
   /// as long as the service.
   [[nodiscard]] Answer<std::function<std::string()>> event_stream(
@@ -191,9 +191,9 @@ class Service {
   Answer<std::string> remove_schedule(std::int64_t id);
   [[nodiscard]] Answer<std::string> schedule(std::int64_t id) const;
   [[nodiscard]] std::string schedules() const;
-  [[nodiscard]] Answer<std::string> nights(std::int64_t schedule,
-                                           int limit,
-                                           std::optional<std::int64_t> before) const;
+  [[nodiscard]] Answer<Page> nights(std::int64_t schedule,
+                                    int limit,
+                                    std::optional<std::int64_t> before) const;
   [[nodiscard]] Answer<std::string> promotions(std::int64_t schedule) const;
   Answer<std::string> promote(std::int64_t schedule, std::string_view document);
   /// Runs the nights that are due (or one of every schedule) here and now.

@@ -70,8 +70,7 @@ void tag(const Request& request, Reply& reply) {
 
 /// Adds the address of the page that follows.
 void link(const Route& route, const Request& request, Reply& reply) {
-  if (!reads(request) || reply.status != 200 || reply.stream) return;
-  const std::string address = next_page(route, request, reply.body);
+  const std::string address = next_page(route, request, reply.next);
   if (!address.empty()) reply.headers.emplace_back("Link", "<" + address + ">; rel=\"next\"");
 }
 

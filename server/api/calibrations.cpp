@@ -16,7 +16,7 @@ Reply list_calibrations(Service& service, const Request& request) {
   const auto limit = static_cast<int>(query.whole("limit", 1, largest_page).value_or(usual_page));
   const auto before = query.whole("before", 1);
   if (!query.problems().empty()) return query.refusal();
-  return {.status = 200, .body = service.calibrations(limit, before)};
+  return reply_of(service.calibrations(limit, before));
 }
 
 Reply get_calibration(Service& service, const Request& request) {
@@ -34,7 +34,7 @@ Reply list_evaluations(Service& service, const Request& request) {
   const auto limit = static_cast<int>(query.whole("limit", 1, largest_page).value_or(usual_page));
   const auto after = query.whole("after", 0);
   if (!query.problems().empty()) return query.refusal();
-  return reply_of(service.evaluations(request.id, limit, after), 200);
+  return reply_of(service.evaluations(request.id, limit, after));
 }
 
 Reply cancel_calibration(Service& service, const Request& request) {

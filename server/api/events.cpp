@@ -4,6 +4,7 @@
 #include "server/api/handlers.hpp"
 #include "server/api/problem.hpp"
 #include "server/api/query.hpp"
+#include "server/api/reply.hpp"
 #include "server/service.hpp"
 
 namespace repose::server::handlers {
@@ -27,9 +28,7 @@ Reply follow(const Service& service,
   const auto last = query.whole_field("last-event-id", 0);
   if (!query.problems().empty()) return query.refusal();
   if (wants_page(request)) {
-    const auto page = service.events(calibration, limit, asked.value_or(0));
-    if (!page) return problem_reply(page.error());
-    return {.status = 200, .body = *page};
+    return reply_of(service.events(calibration, limit, asked.value_or(0)));
   }
   auto after = last ? last : asked;  // a client that comes again keeps its first address
   if (!after && calibration) after = 0;

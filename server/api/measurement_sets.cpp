@@ -4,6 +4,7 @@
 #include "server/api/handlers.hpp"
 #include "server/api/problem.hpp"
 #include "server/api/query.hpp"
+#include "server/api/reply.hpp"
 #include "server/service.hpp"
 
 namespace repose::server::handlers {
@@ -14,12 +15,7 @@ bool wants_table(const Request& request) {
   return request.field("accept").find("text/csv") != std::string::npos;
 }
 
-Reply reply_of(const Answer<std::string>& answer, bool table = false) {
-  if (!answer) return problem_reply(answer.error());
-  return {.status = 200,
-          .body = *answer,
-          .content_type = table ? "text/csv; charset=utf-8; header=present" : "application/json"};
-}
+constexpr const char* table_type = "text/csv; charset=utf-8; header=present";
 
 }  // namespace
 
@@ -28,7 +24,7 @@ Reply list_measurement_sets(Service& service, const Request& request) {
   const auto limit = static_cast<int>(query.whole("limit", 1, largest_page).value_or(usual_page));
   const auto after = query.text("after");
   if (!query.problems().empty()) return query.refusal();
-  return {.status = 200, .body = service.measurement_sets(limit, after)};
+  return reply_of(service.measurement_sets(limit, after));
 }
 
 Reply get_measurement_set(Service& service, const Request& request) {
@@ -36,7 +32,9 @@ Reply get_measurement_set(Service& service, const Request& request) {
   const auto version = query.whole("version", 1);
   if (!query.problems().empty()) return query.refusal();
   const bool table = wants_table(request);
-  return reply_of(service.measurement_set(request.name, version, table), table);
+  Reply reply = reply_of(service.measurement_set(request.name, version, table));
+  if (table && reply.status == 200) reply.content_type = table_type;
+  return reply;
 }
 
 Reply put_measurement_set(Service& service, const Request& request) {
@@ -64,7 +62,7 @@ Reply list_fits(Service& service, const Request& request) {
   const bool latest = query.truth("latest");
   if (!query.problems().empty()) return query.refusal();
   if (latest) limit = 1;
-  return {.status = 200, .body = service.fits(filter, limit)};
+  return reply_of(service.fits(filter, limit));
 }
 
 }  // namespace repose::server::handlers

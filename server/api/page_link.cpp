@@ -24,27 +24,13 @@ std::string percent_encoded(std::string_view text) {
   return result;
 }
 
-/// What stands at the end of a list: the name or number where the next page begins.
-std::string cursor_of(const std::string& body) {
-  constexpr std::string_view mark = ",\"next\":";
-  const auto at = body.rfind(mark);
-  if (at == std::string::npos) return {};
-  std::string cursor = body.substr(at + mark.size());
-  if (cursor.empty() || cursor.back() != '}') return {};
-  cursor.pop_back();
-  if (cursor.find_first_of(",:{}[]") != std::string::npos || cursor == "null") return {};
-  std::erase(cursor, '"');
-  return cursor;
-}
-
 }  // namespace
 
-std::string next_page(const Route& route, const Request& request, const std::string& body) {
+std::string next_page(const Route& route, const Request& request, const std::string& cursor) {
   const auto field = std::ranges::find_if(route.query, [](const QueryField& one) {
     return one.name == "before" || one.name == "after";
   });
   if (field == route.query.end()) return {};
-  const std::string cursor = cursor_of(body);
   if (cursor.empty()) return {};
   std::string address = percent_encoded(request.path) + "?";
   for (const auto& [name, value] : request.query) {

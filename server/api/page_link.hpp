@@ -7,8 +7,8 @@
 
 namespace repose::server {
 
-/// Of a list's body, which ends with its member "next"; empty where no page follows, or where the
-/// route has no field of the query for one.
-std::string next_page(const Route& route, const Request& request, const std::string& body);
+/// `cursor`: where that page begins. Empty without one, or where the route has no field of the
+/// query for it.
+std::string next_page(const Route& route, const Request& request, const std::string& cursor);
 
 }  // namespace repose::server

@@ -10,6 +10,11 @@ Reply reply_of(const Answer<std::string>& answer, int status) {
   return {.status = status, .body = *answer};
 }
 
+Reply reply_of(const Answer<Page>& answer) {
+  if (!answer) return problem_reply(answer.error());
+  return {.body = answer->document, .next = answer->next};
+}
+
 namespace {
 
 Reply with_address(const Answer<std::string>& answer, int status, std::string_view collection) {

@@ -12,6 +12,9 @@ namespace repose::server {
 /// The document with that status, or the refusal as a problem.
 Reply reply_of(const Answer<std::string>& answer, int status = 200);
 
+/// A page, which knows where the next one begins.
+Reply reply_of(const Answer<Page>& answer);
+
 /// 201: made. The document's number is the last segment of its address.
 Reply created(const Answer<std::string>& answer, std::string_view collection);
 

@@ -45,6 +45,7 @@ struct Reply {
   std::string body;
   std::string content_type = "application/json";
   std::vector<std::pair<std::string, std::string>> headers = {};
+  std::string next = {};  ///< of a page of a list: where the next one begins; empty at the end
   /// Of an answer that does not end: the text that has come up since the last call.
   std::function<std::string()> stream = {};
 };

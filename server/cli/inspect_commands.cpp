@@ -81,7 +81,7 @@ int list_command(const ListCommand& command) {
   options.database = command.database;
   options.read_only = true;
   const Service service(options);
-  const std::string text = service.calibrations(command.limit, std::nullopt);
+  const std::string text = service.calibrations(command.limit, std::nullopt).document;
   if (command.form == Form::json) {
     std::cout << text << "\n";
     return exit_code::done;

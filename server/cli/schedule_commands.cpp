@@ -82,7 +82,10 @@ int schedule_remove_command(const ScheduleCommand& command) {
 int schedule_history_command(const ScheduleCommand& command) {
   if (!is_there(command.database)) return exit_code::misused;
   const Service service(options_of(command, true));
-  return print(command, service.nights(command.id, command.limit, std::nullopt), print_nights_text);
+  const Answer<Page> page = service.nights(command.id, command.limit, std::nullopt);
+  return print(command,
+               page ? Answer<std::string>(page->document) : engine::Unexpected{page.error()},
+               print_nights_text);
 }
 
 int schedule_promote_command(const ScheduleCommand& command) {

@@ -23,7 +23,7 @@ Json data_of(const db::EventRecord& event) {
 
 }  // namespace
 
-std::string print_events(const std::vector<db::EventRecord>& events, int limit) {
+Page print_events(const std::vector<db::EventRecord>& events, int limit) {
   Json items = Json::array();
   for (const auto& event : events) {
     Json item;
@@ -33,11 +33,7 @@ std::string print_events(const std::vector<db::EventRecord>& events, int limit) 
     item["data"] = data_of(event);
     items.push_back(std::move(item));
   }
-  const bool full = events.size() >= static_cast<std::size_t>(limit) && !events.empty();
-  Json json;
-  json["items"] = std::move(items);
-  json["next"] = full ? Json(events.back().id) : Json(nullptr);
-  return to_text(json);
+  return print_page(std::move(items), limit, events.empty() ? Json() : Json(events.back().id));
 }
 
 std::string print_event_data(const db::EventRecord& event) { return to_text(data_of(event)); }

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "db/event_store.hpp"
+#include "server/json/page.hpp"
 
 namespace repose::server {
 
 /// {"items":[{"id","created_at","kind","data"}],"next"}
-std::string print_events(const std::vector<db::EventRecord>& events, int limit);
+Page print_events(const std::vector<db::EventRecord>& events, int limit);
 
 /// id, event and data of each.
 /// What an event says beside its number and kind: an object.

@@ -36,15 +36,6 @@ Json summary(const db::CalibrationRecord& record) {
   return json;
 }
 
-template <class Items>
-Json page(Json items, const Items& records, int limit, std::int64_t last) {
-  const bool full = records.size() >= static_cast<std::size_t>(limit);
-  Json json;
-  json["items"] = std::move(items);
-  json["next"] = full && !records.empty() ? Json(last) : Json(nullptr);
-  return json;
-}
-
 }  // namespace
 
 std::string print_time(std::int64_t microseconds) {
@@ -66,13 +57,13 @@ std::string print_job(const db::CalibrationRecord& record) {
   return to_text(json);
 }
 
-std::string print_jobs(const std::vector<db::CalibrationRecord>& records, int limit) {
+Page print_jobs(const std::vector<db::CalibrationRecord>& records, int limit) {
   Json items = Json::array();
   for (const auto& record : records) items.push_back(summary(record));
-  return to_text(page(std::move(items), records, limit, records.empty() ? 0 : records.back().id));
+  return print_page(std::move(items), limit, records.empty() ? Json() : Json(records.back().id));
 }
 
-std::string print_used(const std::vector<db::UsedEvaluation>& used, int limit) {
+Page print_used(const std::vector<db::UsedEvaluation>& used, int limit) {
   Json items = Json::array();
   for (const auto& [ordinal, evaluation] : used) {
     Json item;
@@ -85,7 +76,7 @@ std::string print_used(const std::vector<db::UsedEvaluation>& used, int limit) {
     item["answer"] = document(evaluation.answer);
     items.push_back(std::move(item));
   }
-  return to_text(page(std::move(items), used, limit, used.empty() ? 0 : used.back().ordinal));
+  return print_page(std::move(items), limit, used.empty() ? Json() : Json(used.back().ordinal));
 }
 
 std::string print_best_fits(const std::vector<db::CalibrationRecord>& records) {

@@ -8,17 +8,16 @@
 #include <vector>
 
 #include "db/record.hpp"
+#include "server/json/page.hpp"
 
 namespace repose::server {
 
 /// {"id","name","state","created_at","started_at","finished_at","study","progress","fit","error"}
 std::string print_job(const db::CalibrationRecord& record);
 
-/// A page of a list: {"items":[...],"next"}; `next` is the cursor of the page after, null at the
-/// end.
-std::string print_jobs(const std::vector<db::CalibrationRecord>& records, int limit);
+Page print_jobs(const std::vector<db::CalibrationRecord>& records, int limit);
 
-std::string print_used(const std::vector<db::UsedEvaluation>& used, int limit);
+Page print_used(const std::vector<db::UsedEvaluation>& used, int limit);
 
 /// {"items":[{"calibration","name","misfit","finished_at","parameters"}]}
 std::string print_best_fits(const std::vector<db::CalibrationRecord>& records);

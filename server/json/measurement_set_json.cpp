@@ -229,13 +229,10 @@ std::string print_measurement_table(const db::MeasurementSetRecord& record) {
   return print_csv(rows);
 }
 
-std::string print_measurement_sets(const std::vector<db::MeasurementSetRecord>& records,
-                                   int limit) {
+Page print_measurement_sets(const std::vector<db::MeasurementSetRecord>& records, int limit) {
   Json items = Json::array();
   for (const auto& record : records) items.push_back(record_head(record));
-  const bool full = !records.empty() && records.size() >= static_cast<std::size_t>(limit);
-  return to_text(Json{{"items", std::move(items)},
-                      {"next", full ? Json(records.back().name) : Json(nullptr)}});
+  return print_page(std::move(items), limit, records.empty() ? Json() : Json(records.back().name));
 }
 
 engine::Result<Submission, Problems> parse_submission(std::string_view text) {
@@ -276,7 +273,7 @@ std::string with_measurements(std::string_view study, std::string_view measureme
   return to_text(json);
 }
 
-std::string print_fits(const std::vector<db::FitRecord>& records, int limit) {
+Page print_fits(const std::vector<db::FitRecord>& records, int limit) {
   Json items = Json::array();
   for (const auto& [calibration, material, set, version] : records) {
     const Json fit = Json::parse(calibration.fit.value_or("{}"));
@@ -300,9 +297,8 @@ std::string print_fits(const std::vector<db::FitRecord>& records, int limit) {
         {"finished_at", print_time(calibration.finished_at.value_or(0))}};
     items.push_back(std::move(item));
   }
-  const bool full = !records.empty() && records.size() >= static_cast<std::size_t>(limit);
-  return to_text(Json{{"items", std::move(items)},
-                      {"next", full ? Json(records.back().calibration.id) : Json(nullptr)}});
+  const Json last = records.empty() ? Json() : Json(records.back().calibration.id);
+  return print_page(std::move(items), limit, last);
 }
 
 }  // namespace repose::server

@@ -8,6 +8,7 @@
 
 #include "db/measurement_store.hpp"
 #include "engine/result.hpp"
+#include "server/json/page.hpp"
 #include "server/json/problem.hpp"
 
 namespace repose::server {
@@ -30,7 +31,7 @@ engine::Result<MeasurementSet, Problems> parse_measurement_table(std::string_vie
 std::string print_measurement_set(const db::MeasurementSetRecord& record);
 std::string print_measurement_table(const db::MeasurementSetRecord& record);
 /// {"items":[... without measurements],"next"}
-std::string print_measurement_sets(const std::vector<db::MeasurementSetRecord>& records, int limit);
+Page print_measurement_sets(const std::vector<db::MeasurementSetRecord>& records, int limit);
 
 /// What a submission says beside its study.
 struct Submission {
@@ -48,6 +49,6 @@ std::string with_measurements(std::string_view study, std::string_view measureme
 
 /// {"items":[{"calibration","name","material","measurement_set","finished_at","misfit",
 /// "parameters","not_determined","best","remarks","provenance"}],"next"}
-std::string print_fits(const std::vector<db::FitRecord>& records, int limit);
+Page print_fits(const std::vector<db::FitRecord>& records, int limit);
 
 }  // namespace repose::server

@@ -228,12 +228,10 @@ std::vector<Followed> parse_followed(std::string_view report) {
 
 std::string print_night(const db::NightRecord& night) { return to_text(night_json(night)); }
 
-std::string print_nights(const std::vector<db::NightRecord>& nights, int limit) {
+Page print_nights(const std::vector<db::NightRecord>& nights, int limit) {
   Json items = Json::array();
   for (const db::NightRecord& night : nights) items.push_back(night_json(night));
-  const bool full = nights.size() >= static_cast<std::size_t>(limit);
-  return to_text(Json{{"items", std::move(items)},
-                      {"next", full && !nights.empty() ? Json(nights.back().id) : nullptr}});
+  return print_page(std::move(items), limit, nights.empty() ? Json() : Json(nights.back().id));
 }
 
 std::string print_promotions(const std::vector<db::PromotionRecord>& promotions) {

@@ -13,6 +13,7 @@
 #include "calibrator/fit.hpp"
 #include "db/schedule_store.hpp"
 #include "engine/result.hpp"
+#include "server/json/page.hpp"
 #include "server/json/problem.hpp"
 #include "server/nightly/drift.hpp"
 #include "server/nightly/timetable.hpp"
@@ -69,7 +70,7 @@ std::vector<Followed> parse_followed(std::string_view report);
 /// A night: {"id","schedule","planned_at","state","outcome",...,"result"}.
 std::string print_night(const db::NightRecord& night);
 /// {"items","next"}
-std::string print_nights(const std::vector<db::NightRecord>& nights, int limit);
+Page print_nights(const std::vector<db::NightRecord>& nights, int limit);
 /// {"items"}
 std::string print_promotions(const std::vector<db::PromotionRecord>& promotions);
 

@@ -158,6 +158,15 @@ std::string to_text(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
+Page print_page(Json items, int limit, const Json& last) {
+  const bool more = !items.empty() && items.size() >= static_cast<std::size_t>(limit);
+  Json page;
+  page["items"] = std::move(items);
+  page["next"] = more ? last : Json(nullptr);
+  if (!more) return {to_text(page), {}};
+  return {to_text(page), last.is_string() ? last.get<std::string>() : to_text(last)};
+}
+
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 std::string pointer_to(std::string_view parent, std::string_view member) {

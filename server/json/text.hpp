@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "server/json/page.hpp"
 #include "server/json/problem_list.hpp"
 
 namespace repose::server {
@@ -39,6 +40,10 @@ std::optional<Json> parse_text(std::string_view text,
 
 /// Compact where indent is negative. Bytes that are no UTF-8 are replaced.
 std::string to_text(const Json& json, int indent = -1);
+
+/// A page of a list. `last` is the cursor of its last item, with which the page after it is asked
+/// for: there is one where as many items were found as were asked for.
+Page print_page(Json items, int limit, const Json& last);
 
 /// A number, null where it is not finite: JSON has no NaN.
 Json number_or_null(double value);

@@ -59,7 +59,7 @@ class Plant {
   void run(const std::stop_token& stop = {}, const CalibrationEvents& events = {}) {
     service_.run_nights(false, stop, events);
   }
-  Json history() { return Json::parse(*service_.nights(1, 10000, std::nullopt))["items"]; }
+  Json history() { return Json::parse(service_.nights(1, 10000, std::nullopt)->document)["items"]; }
   Json last() { return history().at(0); }
   Json standing() { return Json::parse(*service_.schedule(1)); }
   Service& service() { return service_; }
@@ -189,7 +189,7 @@ TEST_CASE("a night takes the measurements of a set as they are that night, and t
   CHECK(plant.service().add_schedule(to_text(schedule_of(study))).error().problems[0].pointer ==
         "/study/measurement_set");
   std::vector<std::string> kinds;
-  const Json told = Json::parse(*plant.service().events(std::nullopt, 200, 0));
+  const Json told = Json::parse(plant.service().events(std::nullopt, 200, 0)->document);
   for (const Json& event : told["items"]) {
     const auto kind = event["kind"].get<std::string>();
     if (kind.starts_with("night") || kind == "promotion") kinds.push_back(kind);
