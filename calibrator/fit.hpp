@@ -50,7 +50,7 @@ struct NextMeasurement {
   bool again = false;           ///< it is among the measurements: this is it with half the error
   double predicted = 0.0;       ///< SI, at the best set
   double standard_error = 0.0;  ///< SI; assumed: the median relative one of the study, or half
-  double gain = 0.0;            ///< of information, nat
+  double gain = 0.0;            ///< shares of the prior variances that it would take away, summed
   std::size_t parameter = 0;    ///< that it would teach most about, index of the free ones
   double learnt = 0.0;          ///< of that parameter with it, as FittedParameter's
 };

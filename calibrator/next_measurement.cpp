@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "calibrator/diagnosis/tolerance.hpp"
@@ -20,6 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t shown = 3;
+constexpr double least_gain = 0.01;
 
 /// Standard errors over sizes of the fitted measurements, their median.
 double typical_relative_error(const std::vector<Measurement>& measurements) {
@@ -54,21 +54,17 @@ std::optional<GaussianProcess> emulator_of(const Ledger& ledger, std::size_t unm
   return GaussianProcess::fit(std::move(samples), starts);
 }
 
-double log_det(const MatrixXd& matrix) {
-  return 2.0 * matrix.llt().matrixLLT().diagonal().array().log().sum();
-}
-
 /// Fills in what the measurement would teach, `added` being J_c' J_c / v_c.
 void judge(const MatrixXd& precision,
            const VectorXd& prior,
            const MatrixXd& added,
            NextMeasurement& next) {
-  const MatrixXd after = precision + added;
-  next.gain = 0.5 * (log_det(after) - log_det(precision));
   const VectorXd variance_before = precision.inverse().diagonal();
-  const VectorXd variance_after = after.inverse().diagonal();
+  const VectorXd variance_after = (precision + added).inverse().diagonal();
+  const VectorXd taken_away = prior.cwiseProduct(variance_before - variance_after);
+  next.gain = taken_away.sum();
   Index most = 0;
-  (prior.array() * (variance_before - variance_after).array()).maxCoeff(&most);
+  taken_away.maxCoeff(&most);
   next.parameter = static_cast<std::size_t>(most);
   next.learnt = 1.0 - prior(most) * variance_after(most);
 }
@@ -84,7 +80,7 @@ std::vector<NextMeasurement> next_measurements(const Outlook& outlook, const Uni
   const MatrixXd precision = information(outlook, best) + MatrixXd(prior.asDiagonal());
   const auto consider = [&](NextMeasurement next, const VectorXd& slope, double weight) {
     judge(precision, prior, weight * slope * slope.transpose(), next);
-    if (next.gain > 0.0) all.push_back(std::move(next));
+    if (next.gain >= least_gain) all.push_back(std::move(next));
   };
   for (const Target& target : outlook.targets) {
     const Measurement& m = measurements[target.measurement];

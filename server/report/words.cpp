@@ -261,6 +261,11 @@ std::vector<std::string> next_sentences(const Calibration& calibration, const Fi
                         ", learnt to " + percent(next.learnt) + " % instead of " +
                         percent(fit.parameters.at(next.parameter).learnt) + " %.");
   }
+  if (sentences.empty() && !fit.posterior.samples.empty()) {
+    sentences.push_back(
+        "Nothing that the runs show beside the measurements, and none of these once more, would "
+        "teach a hundredth more about the parameters.");
+  }
   return sentences;
 }
 

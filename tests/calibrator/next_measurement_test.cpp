@@ -14,7 +14,7 @@ using namespace repose::calibrator;
 namespace {
 
 /// A tilting box whose static angle tells of the first parameter, its onset angle of the second.
-Fit solve(bool measure_onset) {
+Fit solve(bool measure_onset, double static_error = 0.02, double onset_error = 0.02) {
   Calibration c;
   c.name = "box";
   c.budget.evaluations = 40;
@@ -25,12 +25,13 @@ Fit solve(bool measure_onset) {
   angle.experiment.name = "tilting_box";
   angle.observable = "static_angle";
   angle.value = 0.6;
-  angle.standard_error = 0.02;
+  angle.standard_error = static_error;
   angle.unit = engine::unit::radian;
   c.measurements.push_back(angle);
   if (measure_onset) {
     angle.observable = "onset_angle";
     angle.value = 0.4;
+    angle.standard_error = onset_error;
     c.measurements.push_back(angle);
   }
   const SearchSpace space(c);
@@ -66,6 +67,15 @@ TEST_CASE("what the runs show of an open parameter is the measurement that would
   CHECK(fit.next[1].observable == "static_angle");
   CHECK(fit.next[1].again);
   CHECK(fit.next[1].standard_error == Approx(0.01));
+}
+
+TEST_CASE("what is open counts for more than knowing better what is known", "[calibrator]") {
+  // The static angle is known far better than is needed; the onset angle hardly tells anything.
+  const Fit fit = solve(true, 0.0005, 0.1);
+  REQUIRE(!fit.next.empty());
+  CHECK(fit.next[0].observable == "onset_angle");
+  CHECK(fit.next[0].parameter == 1);
+  for (const NextMeasurement& next : fit.next) CHECK(next.observable != "static_angle");
 }
 
 TEST_CASE("where all is measured there is only measuring it better", "[calibrator]") {
