@@ -43,8 +43,8 @@ void on_identification(const Calibration& calibration, const Fit& fit, Sentences
                      counted(fit.directions.size(), "direction");
   if (!open.empty()) {
     text += "; " + enumerate(open) + (open.size() == 1 ? " is" : " are") +
-            " not determined: any value within the bounds fits equally well with the others "
-            "re-adjusted";
+            " not determined: with the others re-adjusted, the runs rule out no value within the "
+            "bounds";
   }
   out.push_back(text + ".");
 

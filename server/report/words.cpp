@@ -222,9 +222,9 @@ std::vector<std::string> learnt_sentences(const Calibration& calibration, const 
     sentences.push_back("Determined by the data: " + enumerate(determined) + ".");
   if (!open.empty()) {
     sentences.push_back("Not determined by the data: " + joined(open, "; ") +
-                        (open.size() == 1 ? ". Its best value is one of many that do as well."
-                                          : ". Their best values are one choice of many that do as "
-                                            "well."));
+                        (open.size() == 1
+                             ? ". No such value is ruled out: the best one is a choice."
+                             : ". No such values are ruled out: the best ones are a choice."));
   }
   if (fit.directions.size() > 1) {
     const auto learnt = static_cast<std::size_t>(
