@@ -92,7 +92,7 @@ std::vector<int> loop_lines(const std::string& text, std::string_view beginning)
 
 }  // namespace
 
-TEST_CASE("g++ vectorises the contact loop of every effect", "[architecture]") {
+TEST_CASE("g++ vectorises the contact loop of every effect", "[architecture][slow]") {
   const auto compilation = compile("engine/contact_model.cpp");
   INFO(compilation.report);
   REQUIRE(compilation.status == 0);
@@ -115,7 +115,7 @@ TEST_CASE("g++ vectorises the contact loop of every effect", "[architecture]") {
   CHECK(loops >= 4);
 }
 
-TEST_CASE("g++ vectorises what all contacts go through", "[architecture]") {
+TEST_CASE("g++ vectorises what all contacts go through", "[architecture][slow]") {
   const auto compilation = compile("engine/contact_model.cpp");
   REQUIRE(compilation.status == 0);
   const auto vectorised = vectorised_loops(compilation.report);

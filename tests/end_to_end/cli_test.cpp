@@ -192,7 +192,7 @@ TEST_CASE("help and version are no errors", "[end_to_end]") {
   CHECK_THAT(run("--version").output, Contains("repose 0."));
 }
 
-TEST_CASE("frames are written with an index", "[end_to_end]") {
+TEST_CASE("frames are written with an index", "[end_to_end][slow]") {
   const TemporaryFolder folder;
   const Ran ran = run("evaluate drop --fidelity draft --json --frames " + folder.path.string());
   CHECK(ran.exit_code == 0);

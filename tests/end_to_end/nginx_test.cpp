@@ -94,7 +94,7 @@ class Proxy {
 
 }  // namespace
 
-TEST_CASE("the site that is shipped serves, streams, and limits", "[end_to_end]") {
+TEST_CASE("the site that is shipped serves, streams, and limits", "[end_to_end][slow]") {
   if (access("/usr/sbin/nginx", X_OK) != 0) {
     WARN("nginx is not installed: not tried");
     return;

@@ -54,7 +54,7 @@ TEST_CASE("every experiment ends and gives its observables in order", "[engine]"
   }
 }
 
-TEST_CASE("the same seed gives the same bits, another seed another bed", "[engine]") {
+TEST_CASE("the same seed gives the same bits, another seed another bed", "[engine][slow]") {
   for (const ExperimentInfo& info : experiment_catalogue()) {
     CAPTURE(info.name);
     const Trial one = small_trial(info.name);

@@ -65,7 +65,7 @@ TEST_CASE("a speed dependence that our own engine hid is added, and the error fa
 }
 
 TEST_CASE("of four suspects the hidden speed dependence is named, and adding it settles the matter",
-          "[server]") {
+          "[server][slow]") {
   const TemporaryFolder folder;
   Service service(in(folder));
   const std::string suspects =
