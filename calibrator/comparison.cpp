@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "calibrator/diagnosis/chi_squared.hpp"
+#include "calibrator/diagnosis/covariance.hpp"
 #include "calibrator/misfit.hpp"
 #include "calibrator/phrase.hpp"
 #include "engine/catalogue.hpp"

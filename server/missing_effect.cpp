@@ -165,8 +165,8 @@ bool weigh(db::Store& store,
     store.set_diagnosis_progress(record.id, print_diagnosis_progress(progress));
     if (events.progress) events.progress(progress);
   };
-  const auto question = calibrator::question_of(own->calibration, own->fit, *stated);
-  const auto result = calibrator::diagnose(question, evaluator, stop, observer);
+  const auto result =
+      calibrator::diagnose(own->calibration, own->fit, *stated, evaluator, stop, observer);
   if (!result || interrupted || stop.stop_requested()) return false;
   store.finish_diagnosis(record.id,
                          "done",

@@ -14,6 +14,7 @@
 #include "calibrator/diagnosis/excuses.hpp"
 #include "calibrator/diagnosis/models.hpp"
 #include "calibrator/diagnosis/paired_offset.hpp"
+#include "calibrator/diagnosis/question.hpp"
 #include "calibrator/diagnosis/refits.hpp"
 #include "calibrator/diagnosis/rivals.hpp"
 #include "calibrator/diagnosis/screen.hpp"
@@ -339,31 +340,13 @@ std::optional<Diagnosis> Inquiry::run() {
 
 }  // namespace
 
-DiagnosisQuestion question_of(const Calibration& calibration,
-                              const Fit& fit,
-                              const Tolerances& stated) {
-  const auto count = static_cast<Index>(calibration.measurements.size());
-  DiagnosisQuestion question{calibration,
-                             fit,
-                             suspects_of(calibration, fit.best),
-                             covariance_of(calibration.measurements, stated),
-                             Vector(count),
-                             Vector(count),
-                             Vector::Zero(count),
-                             candidates_of(calibration, stated)};
-  for (Index j = 0; j < count; ++j) {
-    const Measurement& measurement = calibration.measurements[static_cast<std::size_t>(j)];
-    question.sizes(j) = size_of(measurement);
-    question.freedom(j) = measurement.replicates > 1 ? measurement.replicates - 1.0
-                                                     : std::numeric_limits<double>::infinity();
-    if (static_cast<std::size_t>(j) < fit.offset.size()) {
-      question.offset(j) = fit.offset[static_cast<std::size_t>(j)];
-    }
-    if (static_cast<std::size_t>(j) < fit.offset_error.size()) {
-      question.covariance(j, j) += std::pow(fit.offset_error[static_cast<std::size_t>(j)], 2);
-    }
-  }
-  return question;
+std::optional<Diagnosis> diagnose(const Calibration& calibration,
+                                  const Fit& fit,
+                                  const Tolerances& stated,
+                                  const Evaluator& evaluator,
+                                  std::stop_token stop,
+                                  const DiagnosisObserver& observer) {
+  return diagnose(question_of(calibration, fit, stated), evaluator, std::move(stop), observer);
 }
 
 std::optional<Diagnosis> diagnose(const DiagnosisQuestion& question,

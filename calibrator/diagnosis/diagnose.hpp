@@ -14,41 +14,29 @@
 /// Source of the rules' error rates: 7.1 of the acceptance tests, tests/calibrator/diagnosis.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <stop_token>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 #include "calibrator/calibration.hpp"
-#include "calibrator/diagnosis/deciding_measurement.hpp"
 #include "calibrator/diagnosis/diagnosis.hpp"
-#include "calibrator/diagnosis/tolerance.hpp"
 #include "calibrator/evaluator.hpp"
 #include "calibrator/fit.hpp"
 
 namespace repose::calibrator {
 
-struct DiagnosisQuestion {
-  const Calibration& calibration;  ///< outlives the question, as the fit does
-  const Fit& fit;
-  std::vector<Suspect> suspects;
-  Eigen::MatrixXd covariance;  ///< of all measurements, SI: standard errors and tolerances
-  Eigen::VectorXd sizes;       ///< SI: what 100 % of each measurement is
-  Eigen::VectorXd freedom;     ///< of each standard error; infinite where it is known
-  Eigen::VectorXd offset;      ///< SI: what the laboratory's apparatus adds to the runs'
-  std::vector<Candidate> candidates = {};  ///< that could be measured next
-};
+struct DiagnosisQuestion;  // calibrator/diagnosis/question.hpp
 
-/// The question with the catalogue's suspects and the stated tolerances.
-DiagnosisQuestion question_of(const Calibration& calibration,
-                              const Fit& fit,
-                              const Tolerances& stated = {});
-
+/// What the fit's model lacks, of the catalogue's suspects and with the stated tolerances.
 /// Pure, as calibrate() is: a resumed diagnosis is a replay. Nothing where it was asked to stop:
 /// runs that were cut short are no evidence.
+std::optional<Diagnosis> diagnose(const Calibration& calibration,
+                                  const Fit& fit,
+                                  const Tolerances& stated,
+                                  const Evaluator& evaluator,
+                                  std::stop_token stop = {},
+                                  const DiagnosisObserver& observer = {});
+
+/// The same of any question.
 std::optional<Diagnosis> diagnose(const DiagnosisQuestion& question,
                                   const Evaluator& evaluator,
                                   std::stop_token stop = {},

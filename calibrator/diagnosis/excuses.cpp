@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "calibrator/diagnosis/tolerance.hpp"
 #include "engine/catalogue.hpp"
 
 namespace repose::calibrator {

@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "calibrator/diagnosis/diagnose.hpp"
 #include "calibrator/diagnosis/models.hpp"
+#include "calibrator/diagnosis/question.hpp"
 
 namespace repose::calibrator {
 

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "calibrator/diagnosis/diagnose.hpp"
 #include "calibrator/diagnosis/model_fit.hpp"
+#include "calibrator/diagnosis/question.hpp"
 #include "calibrator/diagnosis/suite_runs.hpp"
 #include "calibrator/diagnosis/trend_emulator.hpp"
 #include "engine/random.hpp"

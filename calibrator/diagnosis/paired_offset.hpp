@@ -6,7 +6,7 @@
 ///   n  pairs     S  sum of squares about the mean     v  variance of one run, by the emulator
 #pragma once
 
-#include "calibrator/diagnosis/diagnose.hpp"
+#include "calibrator/diagnosis/question.hpp"
 #include "calibrator/diagnosis/suite_runs.hpp"
 
 namespace repose::calibrator {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "calibrator/diagnosis/deciding_measurement.hpp"
-#include "calibrator/diagnosis/diagnose.hpp"
 #include "calibrator/diagnosis/models.hpp"
+#include "calibrator/diagnosis/question.hpp"
 
 namespace repose::calibrator {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrator/misfit.hpp"
 #include "engine/catalogue.hpp"
 
 namespace repose::calibrator {
@@ -27,24 +26,6 @@ double tolerance_of(const Measurement& measurement, const Tolerances& stated) {
   const auto observable = std::ranges::find(
       experiment->observables, measurement.observable, &engine::ObservableInfo::name);
   return observable == experiment->observables.end() ? 0.0 : observable->code_spread;
-}
-
-Eigen::MatrixXd covariance_of(std::span<const Measurement> measurements, const Tolerances& stated) {
-  const auto count = static_cast<Eigen::Index>(measurements.size());
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
-  constexpr double shared = 0.75;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Measurement& a = measurements[static_cast<std::size_t>(i)];
-    const double tau = tolerance_of(a, stated) * size_of(a);
-    for (Eigen::Index j = 0; j < i; ++j) {
-      const Measurement& b = measurements[static_cast<std::size_t>(j)];
-      if (observable_name(a) != observable_name(b)) continue;
-      covariance(i, j) = covariance(j, i) = shared * tau * tolerance_of(b, stated) * size_of(b);
-    }
-    const double own = standard_uncertainty(a);
-    covariance(i, i) = own * own + tau * tau;
-  }
-  return covariance;
 }
 
 }  // namespace repose::calibrator

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -159,6 +160,20 @@ std::vector<std::string> wrong_includes(const SourceFile& file) {
   return result;
 }
 
+/// The way by which an include of that library is reached from a file of ours; empty if none is.
+std::string way_to(std::string_view library, const std::string& path, std::set<std::string>& seen) {
+  if (!seen.insert(path).second) return {};
+  for (const auto& line : lines_of(read_text(source_root() / path))) {
+    const auto include = include_of(line);
+    if (!include) continue;
+    if (!include->ours && include->header.starts_with(library)) return path;
+    if (!include->ours || !std::filesystem::exists(source_root() / include->header)) continue;
+    const auto way = way_to(library, include->header, seen);
+    if (!way.empty()) return path + " -> " + way;
+  }
+  return {};
+}
+
 }  // namespace
 
 TEST_CASE("every include points to a layer or library that its file may know", "[architecture]") {
@@ -170,6 +185,17 @@ TEST_CASE("every include points to a layer or library that its file may know", "
     }
   }
   CHECK(files > 50);
+}
+
+TEST_CASE("no file of the server reaches the linear algebra through another's header",
+          "[architecture]") {
+  for (const auto& file : files_below("server/", {".hpp", ".cpp"})) {
+    std::set<std::string> seen;
+    const auto way = way_to("Eigen/", file.path, seen);
+    if (!way.empty()) FAIL_CHECK(way);
+  }
+  std::set<std::string> seen;
+  CHECK(way_to("Eigen/", "calibrator/answer.cpp", seen).ends_with(".hpp"));
 }
 
 TEST_CASE("a wrong include is found, with its file, line and rule", "[architecture]") {

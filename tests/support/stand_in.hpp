@@ -19,6 +19,7 @@
 #include "calibrator/calibration.hpp"
 #include "calibrator/design.hpp"
 #include "calibrator/diagnosis/diagnose.hpp"
+#include "calibrator/diagnosis/question.hpp"
 #include "calibrator/diagnosis/screen.hpp"
 #include "calibrator/evaluator.hpp"
 #include "calibrator/fit.hpp"

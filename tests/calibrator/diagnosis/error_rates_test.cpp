@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 
 #include "calibrator/diagnosis/diagnose.hpp"
+#include "calibrator/diagnosis/question.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/stand_in.hpp"
 #include "tests/support/stand_in_verdict.hpp"

@@ -13,6 +13,7 @@
 
 #include "calibrator/diagnosis/diagnose.hpp"
 #include "calibrator/diagnosis/model_fit.hpp"
+#include "calibrator/diagnosis/question.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/stand_in.hpp"
 #include "tests/support/stand_in_verdict.hpp"

@@ -1,0 +1,20 @@
+/// Covariance of measurements as the model sees them: the laboratory's errors, and the tolerance.
+///
+/// Readings of one observable share most of what two right codes differ by, but not all: a drum at
+/// 15, 30 and 60 rpm was 5 and 8 % steeper and 6 % flatter than another code's.
+///
+///   Cov(t_i, t_j) = 0.75 tau_i tau_j + 0.25 tau_i^2 [i = j],   tau_j = spread x size of y_j
+#pragma once
+
+#include <span>
+
+#include <Eigen/Core>
+
+#include "calibrator/diagnosis/tolerance.hpp"
+
+namespace repose::calibrator {
+
+/// Standard errors and allowances, and the shared tolerance; SI.
+Eigen::MatrixXd covariance_of(std::span<const Measurement> measurements, const Tolerances& stated);
+
+}  // namespace repose::calibrator
