@@ -122,13 +122,16 @@ void on_emulator(const Outlook& outlook, Sentences& out) {
 }
 
 void on_fidelity(const Calibration& calibration, const Fit& fit, Sentences& out) {
+  std::vector<std::string> coarse;
   for (std::size_t j = 0; j < fit.offset_error.size(); ++j) {
     const Measurement& measurement = calibration.measurements[j];
     if (fit.offset_error[j] <= measurement.standard_error) continue;
-    out.push_back("What the confirming fidelity adds to " + measurement_name(measurement) +
-                  " is known to " + quantity(fit.offset_error[j], measurement) +
-                  " only, worse than the measurement itself: search at the confirming fidelity.");
+    coarse.push_back(measurement_name(measurement) + " (" +
+                     quantity(fit.offset_error[j], measurement) + ")");
   }
+  if (coarse.empty()) return;
+  out.push_back("What the confirming fidelity adds is known less well than was measured, of " +
+                enumerate(coarse) + ": search at the confirming fidelity.");
 }
 
 void on_time(const Calibration& calibration, const Fit& fit, Sentences& out) {
