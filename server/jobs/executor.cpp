@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <system_error>
 #include <utility>
 #include <variant>
@@ -152,21 +153,29 @@ void wait_for(double seconds, const std::stop_token& stop) {
 
 Attempts attempt(const Executor& executor,
                  db::Store& store,
+                 std::shared_mutex& host,
                  const Trial& trial,
                  const std::string& key,
                  const Wait& wait,
                  const std::stop_token& stop) {
-  std::map<End, std::size_t> ended;
-  while (true) {
+  const auto ask = [&](auto&& hold) {
+    hold.lock();
     const Question question{
         key, db::AttemptStore(store).begin(key, executor.name, microseconds_now()), trial};
     const auto start = std::chrono::steady_clock::now();
     const Attempted attempted = executor.ask(question, stop);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    Attempts result = conclude(store, question, attempted, took.count());
+    return conclude(store, question, attempted, took.count());
+  };
+  std::map<End, std::size_t> ended;
+  bool alone = false;
+  while (true) {
+    Attempts result = alone ? ask(std::unique_lock(host, std::defer_lock))
+                            : ask(std::shared_lock(host, std::defer_lock));
     const auto waits = waits_after(result.end);
     const std::size_t before = ended[result.end]++;
     if (before >= waits.size()) return result;
+    alone = result.end == End::out_of_memory;
     wait(waits[before], stop);
     if (stop.stop_requested()) return {End::cancelled, {}, "was asked to stop"};
   }

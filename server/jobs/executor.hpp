@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <shared_mutex>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -72,8 +73,11 @@ struct Attempts {
 
 /// Has a question answered: each attempt is in the store before it begins, and its answer with its
 /// end. Where the store has another answer to that question, that one stays, and stands.
+/// `host` is shared by the attempts of all questions; one that was short of memory has it alone
+/// when it is tried again.
 Attempts attempt(const Executor& executor,
                  db::Store& store,
+                 std::shared_mutex& host,
                  const engine::Trial& trial,
                  const std::string& key,
                  const Wait& wait,

@@ -119,7 +119,8 @@ void Workers::count(const std::vector<Task>& tasks) {
 /// Has the trial answered; a failure of the host is kept under a name of its own.
 void Workers::work(Task& task, const std::stop_token& stop) {
   const auto start = std::chrono::steady_clock::now();
-  const Attempts attempts = attempt(executor_, store_, *task.trial, task.key, options_.wait, stop);
+  const Attempts attempts =
+      attempt(executor_, store_, host_, *task.trial, task.key, options_.wait, stop);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   task.seconds = took.count();
   task.ended = microseconds_now();

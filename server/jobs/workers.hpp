@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -67,6 +68,7 @@ class Workers {
   db::Store& store_;
   WorkerOptions options_;
   Executor executor_;
+  std::shared_mutex host_;
   mutable std::mutex mutex_;
   std::map<std::string, double> seconds_;  ///< last wall time by experiment and fidelity
   std::vector<std::string> used_;

@@ -2,6 +2,8 @@
 #include "server/jobs/executor.hpp"
 
 #include <fstream>
+#include <shared_mutex>
+#include <thread>
 #include <variant>
 
 #include <catch2/catch.hpp>
@@ -48,11 +50,13 @@ struct Told {
 
 Told ask(const Executor& executor, db::Store& store, const std::stop_token& stop = {}) {
   Told told;
+  std::shared_mutex host;
   const engine::Trial trial = drop();
   const std::string key = evaluation_key(trial);
   told.came_to = attempt(
       executor,
       store,
+      host,
       trial,
       key,
       [&](double seconds, const std::stop_token&) { told.waits.push_back(seconds); },
@@ -104,7 +108,8 @@ TEST_CASE("every executor takes a failure of the physics for an answer", "[serve
     INFO(executor.name);
     const TemporaryFolder folder;
     db::Store store(folder / "a.db", db::Access::write);
-    const Attempts came_to = attempt(executor, store, trial, "key", wait_for, {});
+    std::shared_mutex host;
+    const Attempts came_to = attempt(executor, store, host, trial, "key", wait_for, {});
     CHECK(came_to.end == End::answered);
     const auto evaluation = parse_answer(trial, came_to.answer);
     REQUIRE(std::holds_alternative<engine::Failure>(evaluation.outcome));
@@ -196,6 +201,26 @@ TEST_CASE("a process gets no more memory than its limit", "[server]") {
   CHECK(ask(child_executor(greedy, {.bytes = half})).ends ==
         Ends{"out_of_memory", "out_of_memory"});
   CHECK(ask(child_executor(greedy, {.bytes = 8 * half})).ends == Ends{"answered"});
+}
+
+TEST_CASE("an attempt after one that was short of memory has the host alone", "[server]") {
+  const TemporaryFolder folder;
+  db::Store store(folder / "a.db", db::Access::write);
+  std::shared_mutex host;
+  std::vector<bool> others;  // of each attempt: whether another could have run beside it
+  const Executor greedy{"greedy", [&](const Question& question, const std::stop_token& stop) {
+                          std::jthread([&] {
+                            others.push_back(host.try_lock_shared());
+                            if (others.back()) host.unlock_shared();
+                          }).join();
+                          if (others.size() == 1) return Attempted{End::out_of_memory, {}, {}};
+                          return inline_executor().ask(question, stop);
+                        }};
+  const auto at_once = [](double, const std::stop_token&) {};
+  CHECK(attempt(greedy, store, host, drop(), "key", at_once, {}).end == End::answered);
+  CHECK(others == std::vector<bool>{true, false});
+  CHECK(host.try_lock());
+  host.unlock();
 }
 
 TEST_CASE("a late answer of an attempt that was given up changes nothing", "[server]") {
