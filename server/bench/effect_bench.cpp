@@ -94,6 +94,11 @@ Mean mean_of(const std::vector<Evaluation>& runs, std::size_t observable) {
 
 }  // namespace
 
+std::map<std::string, double> conditions_of(const EffectInfo& effect) {
+  if (effect.text.condition != "moisture") return {};
+  return {{"moisture", 0.20}};
+}
+
 EffectBench bench_effect(const EffectInfo& effect,
                          const ParameterSet& grain,
                          std::span<const ExperimentInfo* const> experiments,
@@ -104,8 +109,8 @@ EffectBench bench_effect(const EffectInfo& effect,
   ParameterSet strong = base;
   for (const auto& [key, value] : bench.parameters) strong.set(key, value);
   for (const ExperimentInfo* experiment : experiments) {
-    engine::Experiment what{std::string(experiment->name), engine::Fidelity::draft, {}};
-    if (effect.text.condition == "moisture") what.settings["moisture"] = wet;
+    const engine::Experiment what{
+        std::string(experiment->name), engine::Fidelity::draft, conditions_of(effect)};
     const auto runs_without = ask({base, what, 1}, seeds),
                runs_with = ask({strong, what, 1}, seeds);
     for (std::size_t i = 0; i < experiment->observables.size(); ++i) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -28,8 +29,9 @@ struct EffectBench {
   std::vector<EffectChange> changes;
 };
 
-/// Moisture of the runs of an effect that shows between moistures only; the reference is 12 %.
-inline constexpr double wet = 0.20;
+/// Settings under which an effect can be seen, SI: 20 % moisture for one that shows between
+/// moistures only, where the reference is 12 %.
+std::map<std::string, double> conditions_of(const engine::EffectInfo& effect);
 
 /// The runs of a trial with so many seeds, in order.
 using AskSeeds = std::function<std::vector<engine::Evaluation>(const engine::Trial&, int seeds)>;

@@ -7,6 +7,7 @@
 
 #include "calibrator/diagnosis/suspect.hpp"
 #include "engine/catalogue.hpp"
+#include "server/bench/effect_bench.hpp"
 
 namespace repose::server {
 
@@ -43,7 +44,7 @@ std::vector<std::vector<MaterialId>> places_of(const Sweep& sweep, engine::Scope
 
 TrendParameter swept(const Sweep& sweep, const ParameterSet& reference) {
   const engine::ParameterInfo info = *engine::find_parameter(sweep.field);
-  TrendParameter parameter{std::string(sweep.field), info.field->unit, {}, {}};
+  TrendParameter parameter{std::string(sweep.field), info.field->unit, {}, {}, {}};
   for (const double value : sweep.values) {
     ParameterSet& grain = parameter.grains.emplace_back(reference);
     for (const auto& between : places_of(sweep, info.scope)) {
@@ -64,7 +65,8 @@ TrendParameter grown(const calibrator::Suspect& suspect, const ParameterSet& ref
     if (lever.strong != lever.null_value) break;
   }
   const engine::Unit unit = engine::find_parameter(shown->key.field)->field->unit;
-  TrendParameter parameter{shown->key.field, unit, {}, {}};
+  TrendParameter parameter{
+      shown->key.field, unit, {}, {}, conditions_of(*engine::find_effect(suspect.name))};
   for (const double strength : strengths) {
     ParameterSet& grain = parameter.grains.emplace_back(reference);
     suspect.apply(grain, strength);
@@ -73,12 +75,14 @@ TrendParameter grown(const calibrator::Suspect& suspect, const ParameterSet& ref
   return parameter;
 }
 
-std::vector<engine::Trial> trials_of(const ParameterSet& grain, int seeds) {
+std::vector<engine::Trial> trials_of(const ParameterSet& grain,
+                                     const std::map<std::string, double>& settings,
+                                     int seeds) {
   std::vector<engine::Trial> trials;
   for (const engine::ExperimentInfo& info : engine::experiment_catalogue()) {
     for (int seed = 1; seed <= seeds; ++seed) {
       trials.push_back({grain,
-                        {std::string(info.name), engine::Fidelity::draft, {}},
+                        {std::string(info.name), engine::Fidelity::draft, settings},
                         static_cast<std::uint64_t>(seed)});
     }
   }
@@ -116,12 +120,12 @@ Trends measure_trends(const ParameterSet& reference,
                       const LaboratoryObserver& observer) {
   Trends trends;
   trends.parameters = trend_parameters(reference);
-  std::vector<engine::Trial> trials = trials_of(reference, reference_seeds);
+  std::vector<engine::Trial> trials = trials_of(reference, {}, reference_seeds);
   const std::size_t of_reference = trials.size();
   std::vector<std::size_t> parameter_of(of_reference);
   for (std::size_t p = 0; p < trends.parameters.size(); ++p) {
     for (const ParameterSet& grain : trends.parameters[p].grains) {
-      for (engine::Trial& trial : trials_of(grain, 1)) {
+      for (engine::Trial& trial : trials_of(grain, trends.parameters[p].settings, 1)) {
         trials.push_back(std::move(trial));
         parameter_of.push_back(p);
       }

@@ -18,6 +18,7 @@ struct TrendParameter {
   engine::Unit unit;  ///< of `values`
   std::vector<double> values;
   std::vector<engine::ParameterSet> grains;  ///< of each value
+  std::map<std::string, double> settings;    ///< of every experiment, SI; others are usual
 };
 
 /// Material properties and contact laws of the reference grain over plausible ranges; then every

@@ -104,7 +104,7 @@ figcaption b { color: var(--ink); }
 .chart { display: block; width: 100%; max-width: 560px; height: auto; overflow: visible; fill: var(--ink);
   font-family: inherit; }
 .wide { overflow-x: auto; }
-.wide .chart { max-width: none; min-width: 1080px; }
+.wide .chart { max-width: none; min-width: 1020px; }
 .chart text { font-size: 13px; }
 .chart .label { font-weight: 600; }
 .chart .small { font-size: 12px; }

@@ -7,6 +7,7 @@
 
 #include "engine/catalogue.hpp"
 #include "engine/evaluate.hpp"
+#include "server/report/label.hpp"
 #include "server/report/number_text.hpp"
 #include "server/report/page.hpp"
 #include "server/report/svg.hpp"
@@ -147,6 +148,13 @@ void draw_row(Svg& svg,
                number_text(parameter.values.back(), 3) + unit_suffix(parameter.unit),
            "start",
            "quiet");
+  if (!parameter.settings.empty()) {
+    svg.text(0.0,
+             top + 69.0,
+             settings_label({columns[0].experiment, {}, parameter.settings}),
+             "start",
+             "quiet");
+  }
   for (std::size_t c = 0; c < columns.size(); ++c) {
     draw_plot(svg, columns[c], parameter, shown(readings, columns[c]), column_left(c), top);
   }

@@ -64,7 +64,7 @@ TEST_CASE("effects of moisture are benched in the wet, both without and with", "
   bench("moisture_friction", ask);
   REQUIRE(ask.trials.size() == 2);
   for (const engine::Trial& trial : ask.trials) {
-    CHECK(trial.experiment.settings.at("moisture") == wet);
+    CHECK(trial.experiment.settings.at("moisture") == 0.20);
   }
 }
 
