@@ -8,7 +8,6 @@
 
 #include "server/cli/commands.hpp"
 #include "server/cli/input.hpp"
-#include "server/cli/laboratory_options.hpp"
 
 namespace repose::server {
 
@@ -52,5 +51,8 @@ void add_bench(CLI::App& app,
                LaboratoryOptions& laboratory,
                Work& work);
 void add_study(CLI::App& app, StudyCommand& options, Work& work);
+
+/// bench laboratory, bench fidelity, trends, explain; `bench` is the command that measures.
+void add_laboratory(CLI::App& app, CLI::App& bench, LaboratoryOptions& options, Work& work);
 
 }  // namespace repose::server

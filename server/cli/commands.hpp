@@ -203,6 +203,14 @@ int trends_command(const LaboratoryCommand& command);
 /// What an experiment is, on a screen; without a name, which there are.
 int explain_command(const std::string& name);
 
+/// What the commands of the laboratory are asked.
+struct LaboratoryOptions {
+  Form costs = Form::text;
+  LaboratoryCommand fidelity;
+  LaboratoryCommand trends;
+  std::string explained;
+};
+
 struct MaterialsCommand {
   std::string name;    ///< empty: all are listed
   bool study = false;  ///< print a study to start from

@@ -14,7 +14,6 @@ namespace repose::server {
 namespace {
 
 using engine::MaterialId;
-using engine::ParameterKey;
 using engine::ParameterSet;
 
 /// Values of a parameter in its own unit. What is between grains is `at_wall` of that at walls;
@@ -103,10 +102,12 @@ void add(Readings& readings, const engine::Evaluation& evaluation) {
 
 std::vector<TrendParameter> trend_parameters(const ParameterSet& reference) {
   std::vector<TrendParameter> parameters;
-  for (const Sweep& sweep : sweeps) parameters.push_back(swept(sweep, reference));
   calibrator::Calibration of_reference;
   of_reference.fixed = reference;
-  for (const auto& suspect : calibrator::suspects_of(of_reference, reference)) {
+  const auto suspects = calibrator::suspects_of(of_reference, reference);
+  parameters.reserve(sweeps.size() + suspects.size());
+  for (const Sweep& sweep : sweeps) parameters.push_back(swept(sweep, reference));
+  for (const auto& suspect : suspects) {
     const bool is_effect = engine::find_effect(suspect.name) != nullptr;
     if (is_effect && !suspect.levers.empty()) parameters.push_back(grown(suspect, reference));
   }

@@ -1,5 +1,3 @@
-#include "server/cli/laboratory_options.hpp"
-
 #include "server/cli/arguments.hpp"
 
 namespace repose::server {
