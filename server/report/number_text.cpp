@@ -41,6 +41,7 @@ std::string number_text(double value, int significant) {
 int decimals_for(double value, double error) {
   constexpr int most = 9;
   if (error > 0.0 && std::isfinite(error)) return std::clamp(1 - magnitude(error), 0, most);
+  if (!std::isfinite(value)) return 0;
   return std::clamp(3 - magnitude(value), 0, most);
 }
 
