@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/unit.hpp"
 
@@ -17,5 +18,10 @@ std::string quantity(double value, const engine::Unit& unit, int figures);
 
 /// "1 run", "2 runs".
 std::string counted(std::size_t count, std::string_view thing);
+
+/// "a", "a and b", "a, b and c".
+std::string enumerate(const std::vector<std::string>& items);
+
+std::string joined(const std::vector<std::string>& items, std::string_view separator);
 
 }  // namespace repose::calibrator

@@ -17,16 +17,6 @@ std::string quantity(double value, const Measurement& measurement) {
   return calibrator::quantity(value, measurement.unit, figures);
 }
 
-/// "a", "a and b", "a, b and c".
-std::string enumerate(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
-    text += names[i];
-  }
-  return text;
-}
-
 using Sentences = std::vector<std::string>;
 
 void on_identification(const Calibration& calibration, const Fit& fit, Sentences& out) {

@@ -5,36 +5,24 @@
 #include <iterator>
 #include <set>
 
+#include "calibrator/phrase.hpp"
 #include "server/report/label.hpp"
 #include "server/report/number_text.hpp"
 
 namespace repose::server {
 
 using calibrator::Calibration;
+using calibrator::counted;
 using calibrator::Direction;
+using calibrator::enumerate;
 using calibrator::Fit;
 using calibrator::FittedParameter;
+using calibrator::joined;
 using calibrator::Prediction;
 using calibrator::Role;
 using calibrator::StopReason;
 
 namespace {
-
-/// "a", "a and b", "a, b and c"
-std::string enumerate(const std::vector<std::string>& items) {
-  std::string text;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (i > 0) text += i + 1 == items.size() ? " and " : ", ";
-    text += items[i];
-  }
-  return text;
-}
-
-std::string joined(const std::vector<std::string>& items, const char* separator) {
-  std::string text;
-  for (const std::string& item : items) text += (text.empty() ? "" : separator) + item;
-  return text;
-}
 
 std::vector<const Prediction*> predictions_of(const Calibration& calibration,
                                               const Fit& fit,
@@ -53,14 +41,10 @@ std::ptrdiff_t within(const std::vector<const Prediction*>& predictions, double 
       predictions, [&](const Prediction* prediction) { return std::abs(prediction->z) <= errors; });
 }
 
-std::string count_of(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 std::string all_met(std::size_t count, const std::string& within_what) {
   if (count == 1) return "The measurement is met within " + within_what + ".";
   if (count == 2) return "Both measurements are met within " + within_what + ".";
-  return "All " + count_of(count, "measurement") + " are met within " + within_what + ".";
+  return "All " + counted(count, "measurement") + " are met within " + within_what + ".";
 }
 
 std::string missed(const Calibration& calibration, const std::vector<const Prediction*>& fitted) {
@@ -72,7 +56,7 @@ std::string missed(const Calibration& calibration, const std::vector<const Predi
     names.push_back(measurement_label(calibration.measurements.at(prediction->measurement)) + " (" +
                     z + ")");
   }
-  return std::to_string(names.size()) + " of " + count_of(fitted.size(), "measurement") +
+  return std::to_string(names.size()) + " of " + counted(fitted.size(), "measurement") +
          (names.size() == 1 ? " is" : " are") +
          " missed by more than two standard errors: " + enumerate(names) + ".";
 }
@@ -229,8 +213,8 @@ std::vector<std::string> learnt_sentences(const Calibration& calibration, const 
   if (fit.directions.size() > 1) {
     const auto learnt = static_cast<std::size_t>(
         std::ranges::count_if(fit.directions, [](const Direction& d) { return d.learnt; }));
-    sentences.push_back(count_of(learnt, "combination") + " of the " +
-                        count_of(fit.directions.size(), "free parameter") +
+    sentences.push_back(counted(learnt, "combination") + " of the " +
+                        counted(fit.directions.size(), "free parameter") +
                         (learnt == 1 ? " was" : " were") + " learnt.");
     std::ranges::move(learnt_products(calibration, fit), std::back_inserter(sentences));
     std::ranges::move(open_directions(calibration, fit), std::back_inserter(sentences));
@@ -239,7 +223,7 @@ std::vector<std::string> learnt_sentences(const Calibration& calibration, const 
   if (!held_out.empty()) {
     sentences.push_back("Set aside and predicted within two standard errors: " +
                         std::to_string(within(held_out, 2.0)) + " of " +
-                        count_of(held_out.size(), "measurement") + ".");
+                        counted(held_out.size(), "measurement") + ".");
   }
   return sentences;
 }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
+#include "calibrator/phrase.hpp"
 #include "engine/parameter_set.hpp"
 #include "server/report/number_text.hpp"
 #include "server/report/study_words.hpp"
@@ -41,16 +41,15 @@ std::string trend_sentence(const StudyResult& result,
                            const StudyExperiment& what) {
   const TrendCount count = count_trends(result, table, what);
   const int clear = count.clear_agree + static_cast<int>(count.clearly_opposite.size());
-  std::string sentence = table.table + ", " + observable_text(what) +
-                         ": the change against the base has the paper's sign in " +
-                         of(count.agree, count.agree + count.opposite) +
-                         " runs; where both changes exceed twice their standard error, in " +
-                         of(count.clear_agree, clear) + ".";
-  const char* separator = " Opposite, and not explained: ";
-  for (const std::string& run : count.clearly_opposite) {
-    sentence += std::exchange(separator, ", ") + run;
-  }
-  return sentence + (count.clearly_opposite.empty() ? "" : ".");
+  return table.table + ", " + observable_text(what) +
+         ": the change against the base has the paper's sign in " +
+         of(count.agree, count.agree + count.opposite) +
+         " runs; where both changes exceed twice their standard error, in " +
+         of(count.clear_agree, clear) + "." +
+         (count.clearly_opposite.empty()
+              ? ""
+              : " Opposite, and not explained: " +
+                    calibrator::joined(count.clearly_opposite, ", ") + ".");
 }
 
 std::string best_sentence(const StudyResult& result, const StudyExperiment& what) {

@@ -4,6 +4,8 @@
 
 using namespace repose;
 using calibrator::counted;
+using calibrator::enumerate;
+using calibrator::joined;
 using calibrator::number;
 using calibrator::quantity;
 
@@ -24,4 +26,12 @@ TEST_CASE("a quantity is told in the unit of its measurement", "[calibrator]") {
 TEST_CASE("one thing is not many", "[calibrator]") {
   CHECK(counted(1, "run") == "1 run");
   CHECK(counted(0, "run") == "0 runs");
+}
+
+TEST_CASE("the last of several things is joined by a word", "[calibrator]") {
+  CHECK(enumerate({}).empty());
+  CHECK(enumerate({"a"}) == "a");
+  CHECK(enumerate({"a", "b"}) == "a and b");
+  CHECK(enumerate({"a", "b", "c"}) == "a, b and c");
+  CHECK(joined({"a", "b", "c"}, "; ") == "a; b; c");
 }
