@@ -24,8 +24,11 @@ void describe(std::string& page,
 template <class Counts>
 void counts_by(std::string& page,
                std::string_view name,
+               std::string_view kind,
+               std::string_view what,
                std::string_view label,
                const Counts& counts) {
+  describe(page, name, kind, what);
   for (const auto& [value, count] : counts) {
     page.append(name).append("{").append(label).append("=\"").append(value).append("\"} ");
     page.append(std::to_string(count)).append("\n");
@@ -45,10 +48,13 @@ void counter(std::string& page, std::string_view name, std::string_view what, do
 void print_service(std::string& page, const ServiceFigures& figures) {
   describe(page, "repose_build_info", "gauge", "The engine's version.");
   page += "repose_build_info{engine_version=\"" + figures.engine_version + "\"} 1\n";
-  describe(page, "repose_calibrations", "gauge", "Calibrations by state.");
-  counts_by(page, "repose_calibrations", "state", figures.jobs);
-  describe(page, "repose_attempts_total", "counter", "Attempts at evaluations by how they ended.");
-  counts_by(page, "repose_attempts_total", "end", figures.attempts);
+  counts_by(page, "repose_calibrations", "gauge", "Calibrations by state.", "state", figures.jobs);
+  counts_by(page,
+            "repose_attempts_total",
+            "counter",
+            "Attempts at evaluations by how they ended.",
+            "end",
+            figures.attempts);
   counter(page,
           "repose_evaluations_total",
           "Evaluations in the store.",
@@ -102,8 +108,7 @@ void print_drift(std::string& page, const ServiceFigures& figures) {
 }
 
 void print_webhooks(std::string& page, const db::WebhookFigures& figures) {
-  describe(page, "repose_webhooks", "gauge", "Webhooks by state.");
-  counts_by(page, "repose_webhooks", "state", figures.states);
+  counts_by(page, "repose_webhooks", "gauge", "Webhooks by state.", "state", figures.states);
   gauge(page,
         "repose_webhook_deliveries",
         "Events that have arrived, of the webhooks there are.",

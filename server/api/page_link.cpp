@@ -30,8 +30,7 @@ std::string next_page(const Route& route, const Request& request, const std::str
   const auto field = std::ranges::find_if(route.query, [](const QueryField& one) {
     return one.name == "before" || one.name == "after";
   });
-  if (field == route.query.end()) return {};
-  if (cursor.empty()) return {};
+  if (field == route.query.end() || cursor.empty()) return {};
   std::string address = percent_encoded(request.path) + "?";
   for (const auto& [name, value] : request.query) {
     if (name != field->name) address += name + "=" + percent_encoded(value) + "&";
