@@ -9,8 +9,9 @@ namespace repose::server {
 
 namespace {
 
-int magnitude(double value) {  // of the first digit
-  return value == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value))));
+int magnitude(double value) {  // of the first digit; 0 of what has none
+  if (value == 0.0 || !std::isfinite(value)) return 0;
+  return static_cast<int>(std::floor(std::log10(std::abs(value))));
 }
 
 }  // namespace

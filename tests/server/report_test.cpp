@@ -213,6 +213,8 @@ TEST_CASE("numbers are printed with the digits they carry", "[server]") {
   CHECK(server::number_text(0.45000000001) == "0.45");
   CHECK(server::number_text(-0.00012345, 3) == "-0.000123");
   CHECK(server::number_text(none) == "-");
+  CHECK(server::number_text(std::numeric_limits<double>::infinity()) == "inf");
+  CHECK(server::decimals_for(none, none) == 0);
   CHECK(server::with_error(1.04e6, 0.02e6, megapascal) == "1.040 ± 0.020 MPa");
   CHECK(server::with_error(32.1 * degree.factor, none, degree) == "32.10 deg");
   CHECK(server::count_text(1234567) == "1 234 567");
