@@ -37,9 +37,9 @@ constexpr std::array drawings{
       top layer, 20 mm clear of the ends
         | o o o o o o o o o o o |  rim             o .|
         |o o o o o o o o o o o o|  ^           o . o o|   static_angle:
-        | o o o o o o o o o o o |  | depth  | o o o . |   it has slid by d/2
+        | o o o o o o o o o o o |  | depth  | o o o . |   it has slid by `slide`
         |o_o_o_o_o_o_o_o_o_o_o_o|  v        |o . '       onset_angle:
-        <------- length -------->           '   turns at `rate`   0.01 m/s
+        <------- length -------->           '   turns at `rate`   `onset_speed`
       endless (periodic) across its `width`, base of grains' stuff)"},
     Drawing{"heap", R"(
          ||      ||   lifted at lift_speed

@@ -167,6 +167,23 @@ TEST_CASE("frames show the stages of the protocol with all grains", "[engine]") 
   CHECK(grains == evaluation.effort.grains);
 }
 
+TEST_CASE("when a bed counts as moving is the laboratory's choice", "[engine]") {
+  const auto angles = [](double slide, double onset_speed) {
+    Trial t = small_trial("tilting_box");
+    t.experiment.settings["slide"] = slide;
+    t.experiment.settings["onset_speed"] = onset_speed;
+    const Evaluation evaluation = evaluate(t);
+    return std::pair{observations(evaluation)[0].value, observations(evaluation)[1].value};
+  };
+  const auto [half, slow] = angles(0.5, 0.01);
+  const auto [whole, fast] = angles(1.0, 0.02);
+  CHECK(whole > half);
+  CHECK(fast > slow);
+  // A layer that slides freely down a frictionless slope turning at `rate` has gone no further
+  // than g rate t^3 / 6, so that the angle of a whole diameter is at most 2^(1/3) of that of half.
+  CHECK(whole < std::cbrt(2.0) * half);
+}
+
 TEST_CASE("frames change nothing in the answer", "[engine]") {
   Run run;
   run.frames = [](const Frame&) {};
