@@ -105,9 +105,9 @@ struct TiltingBox {
       ObservableInfo{"static_angle",
                      unit::degree,
                      "tilt at which the top layer has slid by `slide` grain diameters",
-                     0.12},
+                     0.05},
       ObservableInfo{
-          "onset_angle", unit::degree, "tilt at which the top layer moves at `onset_speed`", 0.12},
+          "onset_angle", unit::degree, "tilt at which the top layer moves at `onset_speed`", 0.06},
   };
 
   static std::string refuse(const Settings& s, double largest_grain_diameter);
