@@ -2,17 +2,16 @@
 /// better is left, and how implausible even the best point is.
 ///
 ///   hit:          |zbar_j| + s_j / (sigma_j sqrt(R)) <= 1 for every fitted j, R fresh replicates
-///   better left:  P(min_u Q(u) < Q(recommended) - eps),  eps = max(0.5, 0.05 m, 0.2 E
-///   Q(recommended)) implausible:  I(u) = max_j |mu_j - y_j| / sqrt(sd_j^2 + s_j^2 / R + sigma_j^2)
-///   > 3 for all u;
+///   better left:  P(min_u Q(u) < Q(recommended) - eps),
+///                 eps = max(0.5, 0.05 m, 0.2 E Q(recommended))
+///   implausible:  I(u) = max_j |mu_j - y_j| / sqrt(sd_j^2 + s_j^2 / R + sigma_j^2) > 3 for all u;
 ///                 the second largest where m >= 6
 ///
-///   s_j  scatter of one run   sigma_j  standard uncertainty of the measurement   m  fitted
-///   measurements mu, sd  emulator
+///   s_j  scatter of one run     sigma_j  standard uncertainty of the measurement
+///   m    fitted measurements    mu, sd   emulator
 ///
 /// Source: probabilistic stopping, Wilson 2024 (arXiv 2402.16811); implausibility, Bower, Goldstein
-/// &
-///         Vernon 2010 (Bayesian Analysis 5, 619-670).
+///         & Vernon 2010 (Bayesian Analysis 5, 619-670).
 #pragma once
 
 #include <span>

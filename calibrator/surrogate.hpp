@@ -1,21 +1,22 @@
 /// Gaussian processes in place of the simulations: one per measurement, over the unit cube.
 ///
-///   f(u) = m + Z(u),  cov = sf2 M(r) + sl2 (u - 1/2)'(u' - 1/2),  r^2 = sum_k ((u_k - u'_k) /
-///   l_k)^2 M(r) = (1 + sqrt5 r + 5 r^2 / 3) exp(-sqrt5 r)                        (Matern 5/2) y_i
-///   = f(u_i) + e_i,  var e_i = h s_i^2 / R_i
+///   f(u) = m + Z(u),   cov = sf2 M(r) + sl2 (u - 1/2)'(u' - 1/2),
+///   r^2  = sum_k ((u_k - u'_k) / l_k)^2,
+///   M(r) = (1 + sqrt5 r + 5 r^2 / 3) exp(-sqrt5 r)    (Matern 5/2)
+///   y_i  = f(u_i) + e_i,   var e_i = h s_i^2 / R_i
 ///
-///   m    constant mean, by generalised least squares       l_k  correlation lengths, 1
-///   sf2  variance of the curved part, sl2 = 3 of the linear part, both over the variance of the
-///   y_i s_i  scatter of one run, R_i runs at u_i               h    noise factor, 1
+///   m    constant mean, by generalised least squares     l_k  correlation lengths, 1
+///   sf2  variance of the curved part, sl2 = 3 of the linear part, both over the variance of the y_i
+///   s_i  scatter of one run, R_i runs at u_i             h    noise factor, 1
 ///
 /// l, sf2 and h maximise the restricted likelihood times priors (log-normal, constants in the
-/// source). Source: Rasmussen & Williams 2006, eqs. 2.25-2.26, 2.41-2.42, 4.17; noise of replicated
-/// points:
+/// source).
+///
+/// Source: Rasmussen & Williams 2006, eqs. 2.25-2.26, 2.41-2.42, 4.17; noise of replicated points:
 ///         Ankenman, Nelson & Staum 2010, Oper. Res. 58, 371-382.
 /// Check:  the leave-one-out residuals (Dubrule 1983, Math. Geol. 15, 687-699), standardised, have
-/// mean
-///         square 1; where they do not by a factor of two, predicted variances are multiplied by
-///         it.
+///         mean square 1; where they do not by a factor of two, predicted variances are multiplied
+///         by it.
 #pragma once
 
 #include <optional>

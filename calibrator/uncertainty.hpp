@@ -10,8 +10,9 @@
 ///   s       standard deviation of a prior
 ///
 /// A direction (eigenvector of P^-1/2 F P^-1/2, eigenvalue lambda) has posterior over prior
-/// (1 + lambda)^-1/2, and is learnt at 1/2 or less, that is from lambda = 3. Source: profile
-/// likelihood, Venzon & Moolgavkar 1988 (Applied Statistics 37, 87-94); Raue et al.
+/// (1 + lambda)^-1/2, and is learnt at 1/2 or less, that is from lambda = 3.
+///
+/// Source: profile likelihood, Venzon & Moolgavkar 1988 (Applied Statistics 37, 87-94); Raue et al.
 ///         2009 (Bioinformatics 25, 1923-1929).
 #pragma once
 

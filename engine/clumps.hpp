@@ -4,8 +4,8 @@
 /// ids; their rows have the body's motion at the member's centre and the inverse mass of the whole
 /// grain. Each step the body sums what its members received, moves, and writes their rows anew:
 ///
-///   V += F / m dt + g dt,  X += V dt,  L += (sum r_k x F_k + T_k) dt,  orientation by free
-///   rotation with L constant
+///   V += F / m dt + g dt,  X += V dt,  L += (sum r_k x F_k + T_k) dt,
+///   orientation by free rotation with L constant
 ///
 /// The angular momentum L is kept in space, where no torque means no change, to the last bit. The
 /// free rotation is the symmetric product of turns about the principal axes 1 2 3 2 1 with l_k /

@@ -4,8 +4,7 @@
 /// a `text`, a table of `fields`, its `stage` and `scope`, and at least one hook:
 ///
 ///   amend      before anything is bound: `amends` names the parameter that `factor` multiplies
-///   under
-///              the experiment's conditions
+///              under the experiment's conditions
 ///   populate   once, when grains are made: their sizes; of these effects one may be on
 ///   shape      once, when grains are made: the spheres of which a grain consists; one may be on
 ///   prepare    once per material pair: Parameters, pair elasticity -> Coefficients

@@ -11,9 +11,10 @@ namespace repose::calibrator {
 
 /// All of them; none where the question can be asked.
 ///
-///   fewer fitted measurements than the directions that were learnt from them, and one: whatever is
-///   missing, the free parameters follow; readings of one thing that are 5 standard errors apart:
-///   no model meets both; a measurement without a standard error: it weighs everything or nothing
+///   - fewer fitted measurements than the directions that were learnt from them, and one: whatever
+///     is missing, the free parameters follow;
+///   - readings of one thing that are 5 standard errors apart: no model meets both;
+///   - a measurement without a standard error: it weighs everything or nothing.
 std::vector<std::string> objections(const Calibration& calibration, const Fit& fit);
 
 }  // namespace repose::calibrator

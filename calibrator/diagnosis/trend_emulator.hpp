@@ -1,8 +1,8 @@
 /// TrendEmulator: many observables at once over a few dozen or hundred runs, in place of the
 /// simulations while models are compared.
 ///
-///   f_j(x) = b_j0 + b_j'x + Z_j(x),   cov Z_j = s_j^2 (exp(-|x - x'|^2 / (2 l_j^2)) + n_j [same
-///   run])
+///   f_j(x) = b_j0 + b_j'x + Z_j(x),
+///   cov Z_j = s_j^2 (exp(-|x - x'|^2 / (2 l_j^2)) + n_j [same run])
 ///
 ///   x  inputs over their scales     l_j of {0.45, 0.9, 1.8}     n_j of {0.003, 0.02, 0.1, 0.5}
 ///   s_j^2, b_j  by generalised least squares; l_j, n_j by restricted likelihood

@@ -3,8 +3,8 @@
 ///   F = 2 pi R g cos(t) / (1 + 1.05 x + 2.5 x^2),   x = S sqrt(R / V)
 ///
 ///   R  2 R*: the radius of equal grains, twice that of a grain at a wall, m
-///   g  surface tension, N/m     t  contact angle, rad     S  gap between the surfaces, m
-///   (touching: 0) V  volume of the bridge, m3, given as V / R^3
+///   g  surface tension, N/m     t  contact angle, rad
+///   S  gap between the surfaces, m (touching: 0)     V  volume of the bridge, m3, given as V / R^3
 ///
 /// A bridge forms when grains touch and breaks at S = (1 + t/2) V^(1/3). Every contact has its
 /// bridge: liquid is neither used up nor moved, and its viscosity is left out. Friction keeps

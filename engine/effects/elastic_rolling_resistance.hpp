@@ -10,8 +10,8 @@
 /// of constant size it holds a bed wholly at rest.
 ///
 /// Source: model C of Ai, Chen, Rotter & Ooi 2011, Powder Technology 206, 269-282, without its
-/// dashpot;
-///         stiffness after Iwashita & Oda 1998, J. Eng. Mech. 124, 285-292 (k_r = k_t R*^2).
+///         dashpot; stiffness after Iwashita & Oda 1998, J. Eng. Mech. 124, 285-292
+///         (k_r = k_t R*^2).
 /// Null:   mu_r = 0: the cap is zero, so the couple is exactly zero.
 #pragma once
 

@@ -9,7 +9,8 @@
 /// R1 is the radius of the sphere of equal volume. Numbers between are rounded, halves up. Grains
 /// are put in with orientations that have no preference; the spread of sizes scales whole shapes.
 ///
-/// Source: Boac et al. 2010, Trans. ASABE 53(4), 1201-1216, Table 7. Null: 1 member: spheres.
+/// Source: Boac et al. 2010, Trans. ASABE 53(4), 1201-1216, Table 7.
+/// Null:   1 member: spheres.
 #pragma once
 
 #include <array>

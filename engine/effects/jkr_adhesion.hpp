@@ -8,8 +8,10 @@
 /// Grains catch hold when they touch (d = 0, where F is -8/9 of the pull-off already) and let go at
 /// d = -(3/4) (pi^2 w^2 R* / E*^2)^(1/3), where F is -5/9 of it; the pull-off in between is
 /// -(3/2) pi w R*. A collision slower than about sqrt(14.2 (w^5 R*^4 / E*^2)^(1/3) / m*) sticks.
-/// Friction leans on F + 3 pi w R*, none at a drawn-out neck. With s = sqrt(a), d gives s^4 - R* c
-/// s = R* d, c = sqrt(2 pi w / E*): four turns of s <- (R* (d + c s))^(1/4) and eight of Newton.
+/// Friction leans on F + 3 pi w R*, none at a drawn-out neck.
+///
+/// With s = sqrt(a) and c = sqrt(2 pi w / E*), d gives s^4 - R* c s = R* d: solved by four turns of
+/// s <- (R* (d + c s))^(1/4) and eight of Newton.
 ///
 /// Softened grains of the same w keep the pull-off, but lose more in collisions.
 ///

@@ -9,7 +9,8 @@
 /// keeps diameters within exp(+-2 s) of d0, on which the time step and the neighbour search depend.
 ///
 /// Source: Hatch & Choate 1929, J. Franklin Inst. 207, 369-387; exp(s) is the geometric standard
-/// deviation. Null:   s = 0: every draw is exactly 1.
+///         deviation.
+/// Null:   s = 0: every draw is exactly 1.
 #pragma once
 
 #include <array>

@@ -10,9 +10,8 @@
 /// tangential to normal stiffness.
 ///
 /// Source: Tsuji, Tanaka & Ishida 1992, Powder Technology 71, 239-250 (form of the dashpot);
-/// Schwager &
-///         Poeschel 2007, Granular Matter 9, 465-469 (contacts end when the force does, not the
-///         overlap).
+///         Schwager & Poeschel 2007, Granular Matter 9, 465-469 (contacts end when the force does,
+///         not the overlap).
 /// Null:   e = 1: c = 0, the dashpot is exactly zero.
 #pragma once
 

@@ -10,8 +10,7 @@
 /// rest.
 ///
 /// Source: Zhou, Wright, Yang, Xu & Yu 1999, Physica A 269, 536-553; model A of Ai, Chen, Rotter &
-/// Ooi
-///         2011, Powder Technology 206, 269-282.
+///         Ooi 2011, Powder Technology 206, 269-282.
 /// Null:   mu_r = 0: the couple is exactly zero.
 #pragma once
 

@@ -7,7 +7,8 @@
 /// spread of seeds is measured by weighing them.
 ///
 /// Source: Boac et al. 2010, Trans. ASABE 53(4), 1201-1216, standard deviation factor of kernel
-/// mass. Null:   s = 0: every draw is exactly 1.
+///         mass.
+/// Null:   s = 0: every draw is exactly 1.
 #pragma once
 
 #include <array>

@@ -11,8 +11,7 @@
 /// it.
 ///
 /// Source: Mindlin 1949, J. Appl. Mech. 16, 259-268 (stiffness without slip); Cundall & Strack
-/// 1979,
-///         Geotechnique 29, 47-65 (incremental spring with cap).
+///         1979, Geotechnique 29, 47-65 (incremental spring with cap).
 /// Null:   mu = 0: the cap is zero, so the force is exactly zero.
 #pragma once
 

@@ -3,8 +3,8 @@
 ///   F <- F (1 - (1 - q) v / (v + v_c))
 ///
 ///   F  grip force, on which friction leans, N     v  slip speed at the contact, m/s
-///   q  kinetic over static friction, 1     v_c  slip speed at which half of the fall is reached,
-///   m/s
+///   q  kinetic over static friction, 1
+///   v_c  slip speed at which half of the fall is reached, m/s
 ///
 /// The coefficient of sliding friction is then the static one. It acts by what friction leans on,
 /// so that the caps of rolling and twisting, where they lean on the same force, fall with it at
