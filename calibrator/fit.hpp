@@ -18,10 +18,10 @@ struct FittedParameter {
   double value = 0.0;           ///< SI
   double lower = 0.0;           ///< SI; 95 % interval by profile likelihood on the emulator
   double upper = 0.0;           ///< SI
-  bool lower_at_bound = false;  ///< the interval ends at the search bound, not within
+  bool lower_at_bound = false;  ///< the interval ends where the search does: bound or constraint
   bool upper_at_bound = false;
   double learnt = 0.0;      ///< 1 - posterior variance / prior variance, in unit coordinates
-  bool determined = false;  ///< the interval ends within the bounds on both sides
+  bool determined = false;  ///< the interval ends within the search on both sides
 };
 
 /// A direction in the (unit) space of the free parameters, and how well the data fix it.

@@ -21,12 +21,14 @@ constexpr double forbidden = std::numeric_limits<double>::infinity();  // by a c
 constexpr int steps = 40;                                              // grid of a profile
 constexpr std::uint64_t candidate_design = 2'000'000;
 
-double weighted_misfit(const Outlook& outlook, std::span<const double> point) {
+/// Twice, with the priors': Q.
+double minus_log_likelihood(const Outlook& outlook, std::span<const double> point) {
   double sum = outlook.ledger.space().prior_misfit(point);
   for (const Target& target : outlook.targets) {
     const Belief belief = outlook.surrogate.at(target.measurement, point);
     const double gap = belief.mean - target.value;
-    sum += gap * gap / (belief.variance + target.variance);
+    const double variance = belief.variance + target.variance;
+    sum += gap * gap / variance + std::log(variance);
   }
   return sum;
 }
@@ -43,7 +45,7 @@ class Profile {
     start[parameter_] = held;
     if (start.size() == 1) {
       const bool allowed = outlook_.ledger.space().allows(start);
-      return {start, allowed ? weighted_misfit(outlook_, start) : forbidden};
+      return {start, allowed ? minus_log_likelihood(outlook_, start) : forbidden};
     }
     Minimum best = search(start);
     const UnitPoint other = candidate(held);
@@ -66,7 +68,7 @@ class Profile {
       return whole;
     };
     const Objective objective = [&](std::span<const double> point) {
-      return weighted_misfit(outlook_, complete(point));
+      return minus_log_likelihood(outlook_, complete(point));
     };
     const Box cube = outlook_.ledger.space().box();
     Box box = unit_box(rest.size());
@@ -100,54 +102,82 @@ class Profile {
   std::span<const Minimum> candidates_;
 };
 
-/// The profile of one parameter on a grid of `steps` intervals, swept outwards from the best point.
-std::vector<double> sweep(const Profile& profile, const UnitPoint& best, std::size_t parameter) {
-  std::vector<double> values(steps + 1);
-  const int middle = static_cast<int>(std::lround(best[parameter] * steps));
-  UnitPoint from = best;
-  for (int i = middle; i <= steps; ++i) {
-    Minimum found = profile.at(static_cast<double>(i) / steps, from);
-    values[static_cast<std::size_t>(i)] = found.value;
-    from = std::move(found.at);
-  }
-  from = best;
-  for (int i = middle - 1; i >= 0; --i) {
-    Minimum found = profile.at(static_cast<double>(i) / steps, from);
-    values[static_cast<std::size_t>(i)] = found.value;
-    from = std::move(found.at);
-  }
-  return values;
+/// The profile of one parameter: at the best point and outwards from it on a grid of `steps`
+/// intervals, by rising coordinate.
+struct Sweep {
+  std::vector<Minimum> nodes;
+  std::size_t middle = 0;  ///< the best point's
+};
+
+Sweep sweep(const Profile& profile, const UnitPoint& best, std::size_t parameter) {
+  const auto walk = [&](int from, int to, int step, UnitPoint start) {
+    std::vector<Minimum> found;
+    for (int i = from; i != to; i += step) {
+      found.push_back(profile.at(static_cast<double>(i) / steps, std::move(start)));
+      start = found.back().at;
+    }
+    return found;
+  };
+  const double at = best[parameter] * steps;
+  Minimum middle = profile.at(best[parameter], best);
+  const std::vector<Minimum> right =
+      walk(static_cast<int>(std::floor(at)) + 1, steps + 1, 1, middle.at);
+  Sweep result{walk(static_cast<int>(std::ceil(at)) - 1, -1, -1, middle.at), 0};
+  result.middle = result.nodes.size();
+  std::ranges::reverse(result.nodes);
+  result.nodes.push_back(std::move(middle));
+  result.nodes.insert(result.nodes.end(), right.begin(), right.end());
+  return result;
 }
 
-/// The hull of where the profile is below the limit; `best` is inside whatever the grid says.
-Interval hull(const std::vector<double>& profile, double best, double best_value, double limit) {
-  // Where the line between two neighbours meets the limit; `inside` is the one below it.
-  const auto crossing = [&](double inside, double value, double outside, double other) {
-    return inside + (outside - inside) * std::clamp((limit - value) / (other - value), 0.0, 1.0);
+struct End {
+  double at = 0.0;
+  bool at_bound = false;
+};
+
+/// Where the profile passes `smallest` + threshold, between a node within and the next one beyond.
+/// The root of its rise is nearly straight, so that a guess on it needs few corrections. What a
+/// constraint forbids is halved; where that is the end, the data did not set it.
+End crossing(const Profile& profile,
+             std::size_t parameter,
+             Minimum within,
+             Minimum beyond,
+             double smallest) {
+  constexpr int corrections = 6;
+  constexpr double close = 0.02;  // of Q
+  const auto root = [&](const Minimum& node) {
+    return std::sqrt(std::max(0.0, node.value - smallest));
   };
-  const auto at = [](std::size_t i) { return static_cast<double>(i) / steps; };
-  Interval interval{best, best, false, false};
-  const auto below = [&](double value) { return value <= limit; };
-  const auto first = std::ranges::find_if(profile, below);
-  if (first == profile.end()) {  // narrower than the grid: the neighbours of the best bound it
-    const auto right = std::min(static_cast<std::size_t>(best * steps) + 1, profile.size() - 1);
-    const std::size_t left = right - 1;
-    interval.lower = crossing(best, best_value, at(left), profile[left]);
-    interval.upper = crossing(best, best_value, at(right), profile[right]);
-    return interval;
+  const auto guess = [&] {
+    const double share = std::isinf(beyond.value) ? 0.5
+                                                  : (std::sqrt(threshold) - root(within)) /
+                                                        (root(beyond) - root(within));
+    return std::lerp(within.at[parameter], beyond.at[parameter], std::clamp(share, 0.05, 0.95));
+  };
+  for (int i = 0; i < corrections; ++i) {
+    Minimum found = profile.at(guess(), within.at);
+    const double excess = found.value - smallest - threshold;
+    if (std::abs(excess) < close) return {found.at[parameter], false};
+    (excess < 0.0 ? within : beyond) = std::move(found);
   }
-  const auto low = static_cast<std::size_t>(first - profile.begin());
-  auto high = profile.size() - 1;
-  while (!below(profile[high])) --high;
-  interval.lower_at_bound = low == 0;
-  interval.upper_at_bound = high == profile.size() - 1;
-  interval.lower = low == 0 ? 0.0 : crossing(at(low), profile[low], at(low - 1), profile[low - 1]);
-  interval.upper = interval.upper_at_bound
-                       ? 1.0
-                       : crossing(at(high), profile[high], at(high + 1), profile[high + 1]);
-  interval.lower = std::min(interval.lower, best);
-  interval.upper = std::max(interval.upper, best);
-  return interval;
+  if (std::isinf(beyond.value)) return {within.at[parameter], true};
+  return {guess(), false};
+}
+
+/// The hull of where the profile is below the limit; the best point is inside whatever it says.
+Interval hull(const Profile& profile, std::size_t parameter, const Sweep& sweep, double smallest) {
+  const auto& nodes = sweep.nodes;
+  const auto below = [&](const Minimum& node) { return node.value <= smallest + threshold; };
+  std::size_t low = 0, high = nodes.size() - 1;
+  while (low < sweep.middle && !below(nodes[low])) ++low;
+  while (high > sweep.middle && !below(nodes[high])) --high;
+  const auto end = [&](std::size_t last, bool outermost, std::size_t next) {
+    if (outermost) return End{nodes[last].at[parameter], true};
+    return crossing(profile, parameter, nodes[last], nodes[next], smallest);
+  };
+  const End lower = end(low, low == 0, low - 1);
+  const End upper = end(high, high == nodes.size() - 1, high + 1);
+  return {lower.at, upper.at, lower.at_bound, upper.at_bound};
 }
 
 }  // namespace
@@ -157,19 +187,20 @@ std::vector<Interval> profile_intervals(const Outlook& outlook, const UnitPoint&
   const std::uint64_t seed = outlook.ledger.calibration().seed;
   std::vector<Minimum> candidates;
   for (UnitPoint& point : allowed_points(outlook.ledger.space(), 1000, seed, candidate_design)) {
-    const double value = weighted_misfit(outlook, point);
+    const double value = minus_log_likelihood(outlook, point);
     candidates.push_back({std::move(point), value});
   }
-  std::vector<std::vector<double>> profiles;
-  const double best_value = weighted_misfit(outlook, best);
-  double smallest = best_value;
+  std::vector<Profile> profiles;
+  std::vector<Sweep> sweeps;
+  double smallest = minus_log_likelihood(outlook, best);
   for (std::size_t k = 0; k < d; ++k) {
-    profiles.push_back(sweep(Profile(outlook, k, candidates), best, k));
-    smallest = std::min(smallest, std::ranges::min(profiles.back()));
+    profiles.emplace_back(outlook, k, candidates);
+    sweeps.push_back(sweep(profiles.back(), best, k));
+    for (const Minimum& node : sweeps.back().nodes) smallest = std::min(smallest, node.value);
   }
   std::vector<Interval> intervals;
   for (std::size_t k = 0; k < d; ++k) {
-    intervals.push_back(hull(profiles[k], best[k], best_value, smallest + threshold));
+    intervals.push_back(hull(profiles[k], k, sweeps[k], smallest));
   }
   return intervals;
 }

@@ -1,6 +1,6 @@
 /// What the data determine: intervals of the parameters, and the directions that were learnt.
 ///
-///   Q(u)    = p(u) + sum_j (mu_j(u) - y_j)^2 / (sd_j(u)^2 + sigma_j^2)
+///   Q(u)    = p(u) + sum_j [ (mu_j(u) - y_j)^2 / v_j + log v_j ],   v_j = sd_j(u)^2 + sigma_j^2
 ///   PL_k(t) = min over u with u_k = t of Q(u);   95 % interval: PL_k(t) <= min Q + 3.84
 ///   J_jk    = (d mu_j / d u_k) / sqrt(sd_j^2 + sigma_j^2),   F = J'J,   posterior (P + F)^-1
 ///   P_kk    = 12 + (dx_k / du_k / s_k)^2, the second term where parameter k has a prior
@@ -30,7 +30,7 @@ namespace repose::calibrator {
 struct Interval {
   double lower = 0.0;
   double upper = 1.0;
-  bool lower_at_bound = true;
+  bool lower_at_bound = true;  ///< ends where the search does: at a bound, or at a constraint
   bool upper_at_bound = true;
 };
 

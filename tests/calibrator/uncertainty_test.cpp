@@ -43,7 +43,19 @@ TEST_CASE("an interval narrower than the grid is still an interval", "[calibrato
   const auto intervals = profile_intervals(known.outlook(), recommend(known.outlook(), {}));
   CHECK(intervals[0].lower < 0.4123);
   CHECK(intervals[0].upper > 0.4123);
-  CHECK(intervals[0].upper - intervals[0].lower < 0.01);  // true width 0.004, the grid's is 0.025
+  // u0 is known to 0.001; the grid's width is 0.025.
+  CHECK(intervals[0].upper - intervals[0].lower == Approx(2.0 * 1.96 * 0.001).epsilon(0.1));
+}
+
+TEST_CASE("an interval that a constraint ends was not set by the data", "[calibrator]") {
+  toy::Study study = toy::two_of_three(0.02);
+  study.calibration.constraints.push_back({{{study.calibration.free[0].key, 1.0}}, 0.38, {}});
+  const toy::Known known(std::move(study), 20);
+  const auto intervals = profile_intervals(known.outlook(), {0.38, 0.6, 0.5});
+  CHECK(intervals[0].upper_at_bound);
+  CHECK(intervals[0].upper == Approx(0.38).margin(1e-3));
+  CHECK_FALSE(intervals[0].lower_at_bound);
+  CHECK_FALSE(intervals[1].upper_at_bound);
 }
 
 TEST_CASE("directions are orthonormal, best-learnt first, as many as there are parameters",
