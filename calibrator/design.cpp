@@ -46,17 +46,18 @@ double smallest_distance(const std::vector<UnitPoint>& points) {
 
 namespace {
 
-/// The one of 30 designs whose closest two points are farthest apart.
+/// Of 30 designs one that has the most points, and of those the one whose closest two are farthest
+/// apart.
 template <class Make>
 std::vector<UnitPoint> farthest_apart(std::uint64_t index, const Make& make) {
   constexpr std::uint64_t attempts = 30;
   std::vector<UnitPoint> best;
-  double best_distance = -1.0;
+  std::pair<std::size_t, double> best_of{0, -1.0};
   for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
     std::vector<UnitPoint> points = make(index * attempts + attempt);
-    const double closest = smallest_distance(points);
-    if (closest > best_distance) {
-      best_distance = closest;
+    const std::pair of{points.size(), smallest_distance(points)};
+    if (of > best_of) {
+      best_of = of;
       best = std::move(points);
     }
   }
