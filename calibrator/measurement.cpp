@@ -1,6 +1,31 @@
 #include "calibrator/measurement.hpp"
 
+#include <algorithm>
+
+#include "engine/catalogue.hpp"
+
 namespace repose::calibrator {
+
+bool is_same_question(const engine::Experiment& a, const engine::Experiment& b) {
+  if (a.name != b.name) return false;
+  if (a.settings == b.settings) return true;
+  const engine::ExperimentInfo* info = engine::find_experiment(a.name);
+  if (info == nullptr) return false;
+  const auto declared = [&](const engine::Experiment& experiment) {
+    return std::ranges::all_of(experiment.settings, [&](const auto& setting) {
+      return std::ranges::count(info->settings, setting.first, &engine::FieldInfo::name) > 0;
+    });
+  };
+  const auto same_at = [&](engine::Fidelity fidelity) {
+    const auto resolved = [&](engine::Experiment experiment) {
+      experiment.fidelity = fidelity;
+      return engine::resolved_settings(*info, experiment);
+    };
+    return resolved(a) == resolved(b);
+  };
+  using enum engine::Fidelity;
+  return declared(a) && declared(b) && same_at(draft) && same_at(standard) && same_at(paper);
+}
 
 std::vector<std::span<const Measurement>> lines_of(std::span<const Measurement> measurements) {
   std::vector<std::span<const Measurement>> lines;

@@ -32,6 +32,9 @@ struct Measurement {
   bool operator==(const Measurement&) const = default;
 };
 
+/// The same experiment under the same settings, defaults spelt out or not, whatever the fidelity.
+bool is_same_question(const engine::Experiment& a, const engine::Experiment& b);
+
 /// The measurements as a reader sees them: the points of a curve together, any other by itself.
 std::vector<std::span<const Measurement>> lines_of(std::span<const Measurement> measurements);
 

@@ -13,7 +13,9 @@ Suite::Suite(std::span<const Measurement> measurements) {
   for (const Measurement& measurement : measurements) {
     engine::Experiment experiment = measurement.experiment;
     experiment.fidelity = {};  // decided per evaluation, so it must not tell experiments apart
-    auto found = std::ranges::find(experiments_, experiment);
+    auto found = std::ranges::find_if(experiments_, [&](const engine::Experiment& other) {
+      return is_same_question(experiment, other);
+    });
     if (found == experiments_.end()) found = experiments_.insert(found, std::move(experiment));
     readings_.push_back(
         {static_cast<std::size_t>(found - experiments_.begin()), measurement.observable});
@@ -32,18 +34,11 @@ Suite::Suite(std::span<const Measurement> measurements) {
 }
 
 std::optional<std::size_t> Suite::place_of(const engine::Experiment& experiment) const {
-  const engine::ExperimentInfo* info = engine::find_experiment(experiment.name);
-  for (std::size_t i = 0; i < experiments_.size(); ++i) {
-    engine::Experiment own = experiments_[i];
-    own.fidelity = experiment.fidelity;
-    if (own == experiment) return i;
-    // A default that is spelt out is the same question.
-    if (info != nullptr && own.name == experiment.name &&
-        engine::resolved_settings(*info, own) == engine::resolved_settings(*info, experiment)) {
-      return i;
-    }
-  }
-  return std::nullopt;
+  const auto found = std::ranges::find_if(experiments_, [&](const engine::Experiment& own) {
+    return is_same_question(experiment, own);
+  });
+  if (found == experiments_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - experiments_.begin());
 }
 
 void Suite::append_trials(const engine::ParameterSet& parameters,

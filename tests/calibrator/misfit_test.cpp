@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "engine/catalogue.hpp"
+
 using namespace repose;
 using calibrator::Measurement;
 using calibrator::Role;
@@ -51,6 +53,26 @@ TEST_CASE("experiments with other settings are other experiments", "[calibrator]
   auto measurements = three();
   measurements[2].experiment.settings["speed"] = 1.5;
   CHECK(Suite(measurements).size() == 3);
+}
+
+TEST_CASE("a default that is spelt out is the same question", "[calibrator]") {
+  std::vector<Measurement> measurements{measured("drop", "restitution", 0.6, 0.01),
+                                        measured("drop", "restitution", 0.61, 0.01)};
+  measurements[1].experiment.settings["height"] =
+      engine::find_experiment("drop")->settings.front().null_value;
+  REQUIRE(engine::find_experiment("drop")->settings.front().name == "height");
+  CHECK(Suite(measurements).size() == 1);
+  CHECK(Suite(measurements).place_of(measurements[1].experiment) == std::optional<std::size_t>{0});
+  measurements[1].experiment.settings["height"] *= 2.0;
+  CHECK(Suite(measurements).size() == 2);
+
+  // A draft's default spelt out is another question at standard.
+  std::vector<Measurement> boxes{measured("tilting_box", "static_angle", 0.5, 0.01),
+                                 measured("tilting_box", "static_angle", 0.5, 0.01)};
+  const auto settings = engine::find_experiment("tilting_box")->settings;
+  REQUIRE(settings.front().name == "length");
+  boxes[1].experiment.settings["length"] = settings.front().draft;
+  CHECK(Suite(boxes).size() == 2);
 }
 
 TEST_CASE("a failed experiment gives NaN for its observables only", "[calibrator]") {
