@@ -37,6 +37,12 @@ bool same(const ParameterSet& a, const ParameterSet& b) {
   });
 }
 
+struct Before {
+  bool operator()(const ParameterSet* a, const ParameterSet* b) const {
+    return std::ranges::lexicographical_compare(*a, *b);
+  }
+};
+
 std::optional<Level> level_of(const Calibration& calibration, engine::Fidelity fidelity) {
   if (fidelity == calibration.budget.fidelity) return Level::search;
   if (fidelity == calibration.budget.confirm_fidelity) return Level::confirm;
@@ -68,41 +74,29 @@ std::vector<KnownRun> known_runs(const Calibration& calibration,
                                  std::span<const engine::Evaluation> evaluations) {
   const SearchSpace space(calibration);
   const Suite suite(calibration.measurements);
-  struct Run {
-    const engine::Evaluation* first = nullptr;
-    std::vector<const engine::Evaluation*> parts;
-  };
-  std::map<std::pair<std::uint64_t, std::size_t>, std::vector<Run>> by_seed;
-  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  // In the order of what was asked, not of when it was answered.
+  using Parts = std::vector<const engine::Evaluation*>;
+  std::map<std::pair<std::uint64_t, Level>, std::map<const ParameterSet*, Parts, Before>> runs;
   for (const engine::Evaluation& evaluation : evaluations) {
     const auto place = suite.place_of(evaluation.trial.experiment);
     const auto level = level_of(calibration, evaluation.trial.experiment.fidelity);
     if (!place || !level) continue;
-    const std::pair key{evaluation.trial.seed, static_cast<std::size_t>(*level)};
-    std::vector<Run>& runs = by_seed[key];
-    auto run = std::ranges::find_if(runs, [&](const Run& other) {
-      return other.first->trial.parameters == evaluation.trial.parameters;
-    });
-    if (run == runs.end()) {
-      if (runs.empty()) order.push_back(key);
-      run = runs.insert(
-          runs.end(), {&evaluation, std::vector<const engine::Evaluation*>(suite.size(), nullptr)});
-    }
-    run->parts[*place] = &evaluation;
+    auto& of_seed = runs[{evaluation.trial.seed, *level}];
+    Parts& parts = of_seed[&evaluation.trial.parameters];
+    parts.resize(suite.size(), nullptr);
+    parts[*place] = &evaluation;
   }
   std::vector<KnownRun> known;
-  for (const auto& key : order) {
-    for (const Run& run : by_seed[key]) {
-      if (std::ranges::count(run.parts, nullptr) > 0) continue;
-      const ParameterSet& parameters = run.first->trial.parameters;
-      if (!has_set(space, parameters)) continue;
-      std::vector<engine::Evaluation> parts;
+  for (const auto& [seed_and_level, of_seed] : runs) {
+    for (const auto& [parameters, parts] : of_seed) {
+      if (std::ranges::count(parts, nullptr) > 0 || !has_set(space, *parameters)) continue;
+      std::vector<engine::Evaluation> answers;
       double grain_steps = 0.0;
-      for (const engine::Evaluation* part : run.parts) {
-        parts.push_back(*part);
+      for (const engine::Evaluation* part : parts) {
+        answers.push_back(*part);
         grain_steps += static_cast<double>(part->effort.grain_steps);
       }
-      known.push_back({parameters, static_cast<Level>(key.second), suite.read(parts), grain_steps});
+      known.push_back({*parameters, seed_and_level.second, suite.read(answers), grain_steps});
     }
   }
   return known;
