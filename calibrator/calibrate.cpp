@@ -185,6 +185,7 @@ void Search::replicate() {
   for (std::size_t i = 0; i < ledger_.sites().size(); ++i) {
     const Site& site = ledger_.sites()[i];
     if (site.searched.empty() || !site.searched.front().succeeded) continue;
+    if (!ledger_.space().allows(site.at)) continue;
     const double q = misfit(calibration_.measurements, site.searched.front().values);
     if (q < smallest) {
       smallest = q;
@@ -215,14 +216,7 @@ void Search::pair() {
 void Search::learn() {
   surrogate_.emplace(Surrogate(ledger_, surrogate_ ? &*surrogate_ : nullptr));
   offset_ = learn_offset(ledger_, *surrogate_, base_);
-  targets_.clear();
-  for (std::size_t j = 0; j < calibration_.measurements.size(); ++j) {
-    const Measurement& measurement = calibration_.measurements[j];
-    if (measurement.role != Role::fit) continue;
-    const double sigma = standard_uncertainty(measurement);
-    targets_.push_back(
-        {j, measurement.value - offset_.value[j], sigma * sigma + offset_.variance[j]});
-  }
+  targets_ = targets_of(calibration_, offset_);
   if (!by_baseline()) {
     std::vector<UnitPoint> starts;
     if (!recommended_.empty()) starts.push_back(recommended_);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -21,13 +20,19 @@ double smallest_gap(std::size_t dimensions) {
   return 0.02 * std::sqrt(static_cast<double>(dimensions));
 }
 
+/// Whether an evaluated point may be recommended: runs made for another question may lie beyond this
+/// one's constraints, and where none succeeded none will.
+bool may_be_chosen(const Outlook& outlook, const Site& site) {
+  return std::ranges::any_of(site.searched, &SiteRun::succeeded) &&
+         outlook.ledger.space().allows(site.at);
+}
+
 /// The evaluated points of smallest expected misfit, best first.
 std::vector<UnitPoint> best_sites(const Outlook& outlook, std::size_t count) {
   std::vector<std::pair<double, std::size_t>> ranked;
   for (std::size_t i = 0; i < outlook.ledger.sites().size(); ++i) {
     const Site& site = outlook.ledger.sites()[i];
-    const bool useful = std::ranges::any_of(site.searched, &SiteRun::succeeded);
-    if (!useful) continue;
+    if (!may_be_chosen(outlook, site)) continue;
     ranked.emplace_back(expected_misfit(outlook, site.at), i);
   }
   std::ranges::sort(ranked);
@@ -100,6 +105,17 @@ int repeats_of_recommended(const Outlook& outlook,
 }
 
 }  // namespace
+
+std::vector<Target> targets_of(const Calibration& calibration, const Offset& offset) {
+  std::vector<Target> targets;
+  for (std::size_t j = 0; j < calibration.measurements.size(); ++j) {
+    const Measurement& measurement = calibration.measurements[j];
+    if (measurement.role != Role::fit) continue;
+    const double sigma = standard_uncertainty(measurement);
+    targets.push_back({j, measurement.value - offset.value[j], sigma * sigma + offset.variance[j]});
+  }
+  return targets;
+}
 
 std::vector<Residual> residuals(const Surrogate& surrogate,
                                 std::span<const Target> targets,
@@ -208,7 +224,7 @@ UnitPoint settle(const Outlook& outlook, const UnitPoint& point) {
   // A twentieth of a standard deviation squared per measurement is no loss.
   double best_misfit = here + 0.05 * static_cast<double>(outlook.targets.size());
   for (const Site& site : outlook.ledger.sites()) {
-    if (distance(site.at, point) > gap) continue;
+    if (distance(site.at, point) > gap || !may_be_chosen(outlook, site)) continue;
     const double there = expected_misfit(outlook, site.at);
     if (there <= best_misfit) {
       best_misfit = there;
@@ -231,8 +247,7 @@ std::vector<UnitPoint> propose(const Outlook& outlook,
   const Feasibility feasibility(outlook.ledger.sites());
   const CostModel cost(outlook.ledger.sites());
   std::vector<UnitPoint> starts = best_sites(outlook, 3);
-  const double reference = starts.empty() ? std::numeric_limits<double>::infinity()
-                                          : expected_misfit(outlook, starts.front());
+  const double reference = expected_misfit(outlook, starts.empty() ? recommended : starts.front());
   const Improvement improvement(outlook, reference);
   starts.push_back(recommended);
   while (chosen.size() < static_cast<std::size_t>(count)) {

@@ -22,6 +22,7 @@
 #include <Eigen/Core>
 
 #include "calibrator/ledger.hpp"
+#include "calibrator/offset.hpp"
 #include "calibrator/search_space.hpp"
 #include "calibrator/surrogate.hpp"
 
@@ -33,6 +34,9 @@ struct Target {
   double value = 0.0;     ///< SI, at the search fidelity: measured minus offset
   double variance = 0.0;  ///< SI squared: of measurement, allowance and offset
 };
+
+/// Of the fitted measurements.
+std::vector<Target> targets_of(const Calibration& calibration, const Offset& offset);
 
 /// a_j and b_j.
 struct Residual {

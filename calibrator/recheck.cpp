@@ -28,51 +28,43 @@ std::size_t site_of(Ledger& ledger, const UnitPoint& point) {
 }
 
 bool is_same_quantity(const Measurement& a, const Measurement& b) {
-  engine::Experiment experiment = a.experiment;
-  experiment.fidelity = b.experiment.fidelity;
-  return experiment == b.experiment && a.observable == b.observable && a.role == b.role;
+  return is_same_question(a.experiment, b.experiment) && a.observable == b.observable &&
+         a.role == b.role;
 }
 
-/// z of each measurement when the set was published; nothing for one that is new.
-std::vector<std::optional<double>> published_z(const Calibration& calibration,
-                                               const Published& incumbent) {
-  std::vector<std::optional<double>> z;
-  for (const Measurement& measurement : calibration.measurements) {
-    z.emplace_back();
-    for (const Prediction& prediction : incumbent.fit.predictions) {
-      const auto& before = incumbent.calibration.measurements;
-      if (prediction.measurement >= before.size()) continue;
-      if (is_same_quantity(measurement, before[prediction.measurement])) z.back() = prediction.z;
-    }
-  }
-  return z;
+/// The incumbent's measurement of the same quantity; nothing where tonight's is new.
+std::optional<std::size_t> published(const Measurement& measurement, const Published& incumbent) {
+  const auto& before = incumbent.calibration.measurements;
+  const auto found = std::ranges::find_if(
+      before, [&](const Measurement& other) { return is_same_quantity(measurement, other); });
+  if (found == before.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - before.begin());
+}
+
+/// z when the set was published.
+std::optional<double> published_z(const Measurement& measurement, const Published& incumbent) {
+  const auto before = published(measurement, incumbent);
+  const auto& predictions = incumbent.fit.predictions;
+  const auto found = std::ranges::find(predictions, before, [](const Prediction& prediction) {
+    return std::optional(prediction.measurement);
+  });
+  if (!before || found == predictions.end()) return std::nullopt;
+  return found->z;
 }
 
 bool still_holds(const Calibration& calibration,
                  const Published& incumbent,
                  const std::vector<Prediction>& predictions) {
-  const auto before = published_z(calibration, incumbent);
   for (const Prediction& prediction : predictions) {
     const Measurement& measurement = calibration.measurements[prediction.measurement];
     if (measurement.role != Role::fit) continue;
     if (prediction.replicates < 2 || !std::isfinite(prediction.z)) return false;
     const double reach = std::abs(prediction.predicted - measurement.value);
     if (reach + prediction.standard_error <= standard_uncertainty(measurement)) continue;
-    const auto z0 = before[prediction.measurement];
+    const auto z0 = published_z(measurement, incumbent);
     if (!z0 || !(std::abs(prediction.z - *z0) < same_as_published)) return false;
   }
   return true;
-}
-
-std::vector<Target> targets_of(const Calibration& calibration, const Offset& offset) {
-  std::vector<Target> targets;
-  for (std::size_t j = 0; j < calibration.measurements.size(); ++j) {
-    const Measurement& measurement = calibration.measurements[j];
-    if (measurement.role != Role::fit) continue;
-    const double sigma = standard_uncertainty(measurement);
-    targets.push_back({j, measurement.value - offset.value[j], sigma * sigma + offset.variance[j]});
-  }
-  return targets;
 }
 
 /// What the emulator of the known runs adds: what it had promised, intervals, and the best set now.
@@ -89,6 +81,10 @@ void learn(const Ledger& ledger, Confirmation& confirmation, Recheck& result) {
   }
   fill_predictions(outlook, confirmation, result.fit);
   fill_parameters(outlook, point, result.fit);
+  result.fit.offset = offset.value;
+  for (const double variance : offset.variance) {
+    result.fit.offset_error.push_back(std::sqrt(variance));
+  }
   const std::vector<UnitPoint> starts{point};
   Fit now;
   fill_parameters(outlook, recommend(outlook, starts), now);
@@ -109,6 +105,12 @@ void take_over(const Ledger& ledger,
   fill_predictions({ledger, none, {}}, confirmation, result.fit);
   result.fit.parameters = incumbent.fit.parameters;
   result.fit.directions = incumbent.fit.directions;
+  for (const Measurement& measurement : ledger.calibration().measurements) {
+    const auto before = published(measurement, incumbent);
+    const bool known = before && *before < incumbent.fit.offset.size();
+    result.fit.offset.push_back(known ? incumbent.fit.offset[*before] : 0.0);
+    result.fit.offset_error.push_back(known ? incumbent.fit.offset_error[*before] : 0.0);
+  }
   result.fit.remarks.emplace_back(
       "The intervals are those of the calibration that is continued: too few of its runs are of "
       "use now to judge them anew.");
@@ -143,8 +145,6 @@ Recheck recheck(const Calibration& calibration,
   }
   result.passed = still_holds(calibration, incumbent, fit.predictions);
   fit.stop = is_hit(ledger, confirmation.runs) ? StopReason::hit : incumbent.fit.stop;
-  fit.offset.assign(calibration.measurements.size(), 0.0);
-  fit.offset_error = fit.offset;
   fit.evaluations = ledger.spent();
   fit.failed = ledger.failed();
   for (HistoryPoint& point : ledger.history()) point.best = fit.misfit;

@@ -340,6 +340,22 @@ TEST_CASE("no run is asked for, and no set recommended, that breaks a constraint
   CHECK(fit.parameters[0].value + fit.parameters[1].value > 0.88);  // up against it
 }
 
+TEST_CASE("what earlier runs know beyond a constraint is evidence, and no answer", "[calibrator]") {
+  toy::Study study = toy::two_of_three(0.3);
+  const Fit before = solve(study);
+  std::vector<KnownRun> known;
+  for (const HistoryPoint& point : before.history) {
+    known.push_back({point.parameters, Level::search, point.values, 1.0});
+  }
+  const auto& free = study.calibration.free;
+  study.calibration.constraints.push_back({{{free[0].key, 1.0}}, 0.38, {}});  // the truth is at 0.4
+  const Fit fit = calibrate(study.calibration, toy::evaluator(study), {.known = known});
+  CHECK(fit.best.get_or(free[0].key, 9.0) <= 0.38);
+  for (const HistoryPoint& point : fit.history) {
+    CHECK(point.parameters.get_or(free[0].key, 9.0) <= 0.38);
+  }
+}
+
 TEST_CASE("a prior decides what the data leave open", "[calibrator]") {
   toy::Study study = toy::two_of_three(0.3);
   study.calibration.free[2].prior = Prior{0.3, 0.05};

@@ -73,6 +73,42 @@ TEST_CASE("an answer that never hit holds as long as it is no worse", "[calibrat
   CHECK_FALSE(recheck(tonight, published, evaluator, runs_of(published.fit)).passed);
 }
 
+TEST_CASE("what the confirming fidelity adds is told with the answer, known anew or taken over",
+          "[calibrator]") {
+  toy::Study toy_study = study();
+  toy_study.calibration.budget.fidelity = engine::Fidelity::draft;
+  toy_study.calibration.budget.confirm_fidelity = engine::Fidelity::standard;
+  constexpr double added = 1.5;  // to the first observable, by the standard apparatus
+  const Evaluator plain = toy::evaluator(toy_study);
+  const Evaluator evaluator = [&](std::span<const engine::Trial> trials) {
+    auto answers = plain(trials);
+    for (engine::Evaluation& answer : answers) {
+      if (answer.trial.experiment.fidelity != engine::Fidelity::standard) continue;
+      std::get<std::vector<engine::Observation>>(answer.outcome).front().value += added;
+    }
+    return answers;
+  };
+  toy_study.calibration.measurements[0].value += added;
+  const Published published{toy_study.calibration, calibrate(toy_study.calibration, evaluator)};
+  REQUIRE(published.fit.stop == StopReason::hit);
+  std::vector<KnownRun> known;
+  for (const HistoryPoint& point : published.fit.history) {
+    const bool confirmed = point.stage == "pair" || point.stage == "confirm";
+    known.push_back(
+        {point.parameters, confirmed ? Level::confirm : Level::search, point.values, 1.0});
+  }
+  Calibration tonight = toy_study.calibration;
+  tonight.seed = 77;
+  const Recheck anew = recheck(tonight, published, evaluator, known);
+  REQUIRE(anew.fit.offset.size() == 2);
+  CHECK(anew.fit.offset[0] == Approx(added).margin(0.3));
+  CHECK(anew.fit.offset[1] == Approx(0.0).margin(0.3));
+  CHECK(anew.fit.offset_error[0] > 0.0);
+  const Recheck alone = recheck(tonight, published, evaluator, {});
+  CHECK(alone.fit.offset == published.fit.offset);
+  CHECK(alone.fit.offset_error == published.fit.offset_error);
+}
+
 TEST_CASE("without runs to learn from the replicates alone decide", "[calibrator]") {
   const toy::Study toy_study = study();
   const Evaluator evaluator = toy::evaluator(toy_study);
