@@ -61,6 +61,22 @@ std::string suggestion(std::string_view word, std::span<const Name> names) {
   return best.empty() ? "" : " (did you mean \"" + std::string(best) + "\"?)";
 }
 
+/// The whole number that a number is, where it is one of ours: 4, but 4.0 and 4e2 as well. Beyond
+/// 2^53 a number with a point or an exponent no longer says which whole number is meant.
+std::optional<std::int64_t> whole_number(const Json& json) {
+  constexpr double most_exact = 9007199254740992.0;
+  if (json.is_number_unsigned()) {
+    const auto value = json.get<std::uint64_t>();
+    constexpr std::uint64_t most = std::numeric_limits<std::int64_t>::max();
+    return value <= most ? std::optional(static_cast<std::int64_t>(value)) : std::nullopt;
+  }
+  if (json.is_number_integer()) return json.get<std::int64_t>();
+  if (!json.is_number_float()) return std::nullopt;
+  const auto value = json.get<double>();
+  if (value != std::floor(value) || std::abs(value) > most_exact) return std::nullopt;
+  return static_cast<std::int64_t>(value);
+}
+
 }  // namespace
 
 std::string listed(std::span<const std::string_view> names) { return list(names); }
@@ -109,13 +125,8 @@ std::optional<double> Place::number() const {
 }
 
 std::optional<std::int64_t> Place::whole(std::int64_t least, std::int64_t most) const {
-  if (exists() && json().is_number()) {
-    const double value = json().get<double>();
-    if (value == std::floor(value) && value >= static_cast<double>(least) &&
-        value <= static_cast<double>(most)) {
-      return static_cast<std::int64_t>(value);
-    }
-  }
+  const auto value = exists() ? whole_number(json()) : std::nullopt;
+  if (value && *value >= least && *value <= most) return value;
   complain("a whole number in its bounds is expected here",
            std::to_string(least) + " to " + std::to_string(most));
   return std::nullopt;
