@@ -50,6 +50,14 @@ std::vector<std::string_view> units_like(const Unit& unit) {
   return symbols;
 }
 
+std::string form_of_number(const Unit& unit) {
+  std::string symbols;
+  for (const std::string_view symbol : units_like(unit)) {
+    symbols += (symbols.empty() ? "\"" : " or \"") + std::string(symbol) + "\"";
+  }
+  return R"({"value": number, "unit": )" + symbols + "}";
+}
+
 std::optional<Unit> read_unit(const Place& place, const Unit& like, std::string_view what) {
   const auto symbol = place.text(32);
   if (!symbol) return std::nullopt;
@@ -104,9 +112,8 @@ std::optional<double> read_field(const Place& place,
     return static_cast<double>(*index);
   }
   const std::string name = std::string(field.name) + " of " + std::string(what);
-  const std::string form = R"({"value": number, "unit": )" + listed(units_like(field.unit)) + "}";
   if (!place.exists() || !place.json().is_object()) {
-    place.complain(name + " is a number with its unit", form);
+    place.complain(name + " is a number with its unit", form_of_number(field.unit));
     return std::nullopt;
   }
   Members members(place);

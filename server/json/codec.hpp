@@ -65,4 +65,7 @@ Json in_unit(double value, const engine::Unit& unit);
 /// The symbols of all units of that dimension.
 std::vector<std::string_view> units_like(const engine::Unit& unit);
 
+/// How a number of such a unit is written: {"value": number, "unit": "m" or "mm"}.
+std::string form_of_number(const engine::Unit& unit);
+
 }  // namespace repose::server

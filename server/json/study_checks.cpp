@@ -41,12 +41,12 @@ void check_materials(const Place& document, const Study& study) {
       if (study.claims.contains(key)) continue;
       const std::string name(engine::material_names[i]);
       const auto at = pointer_to(pointer_to("/materials", name), field.info.name);
-      document.problems().add(
-          {at,
-           "the experiments need the " + std::string(field.info.name) + " of the " + name +
-               ": give it under materials, or make " + engine::to_string(key) + " free or tied",
-           "nothing",
-           R"({"value": number, "unit": )" + listed(units_like(field.info.unit)) + "}"});
+      document.problems().add({at,
+                               "the experiments need the " + std::string(field.info.name) +
+                                   " of the " + name + ": give it under materials, or make " +
+                                   engine::to_string(key) + " free or tied",
+                               "nothing",
+                               form_of_number(field.info.unit)});
     }
   }
 }

@@ -77,6 +77,13 @@ TEST_CASE("a number without its unit is refused", "[server]") {
   }
 }
 
+TEST_CASE("how a number is written is told in its form, each unit in quotes", "[server]") {
+  CHECK(read("2", length).problems.at(0).allowed ==
+        R"({"value": number, "unit": "m" or "cm" or "mm" or "um" or "in"})");
+  const engine::FieldInfo plain{.name = "plain", .unit = unit::one, .meaning = ""};
+  CHECK(read("2", plain).problems.at(0).allowed == R"({"value": number, "unit": "1" or "%"})");
+}
+
 TEST_CASE("a choice is read and printed by its name", "[server]") {
   CHECK(read("\"blue\"", colour).value == 1.0);
   CHECK(print_field(1.0, colour) == "blue");
