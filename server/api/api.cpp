@@ -122,9 +122,9 @@ std::optional<Reply> Api::refuse(const Route& route, Request& request) {
 Reply Api::answer(const Route& route, Request& request) {
   if (auto refusal = refuse(route, request)) return std::move(*refusal);
   if (reads(request)) return run_route(route, service_, request);
-  if (!request.field("if-match").empty()) return if_unchanged(route, request);
+  const std::scoped_lock hold(changes_);
   if (!request.field("idempotency-key").empty()) return once(route, request);
-  return run_route(route, service_, request);
+  return change(route, request);
 }
 
 /// Does it where nobody has done it with that key, else says what was answered then.
@@ -135,12 +135,14 @@ Reply Api::once(const Route& route, const Request& request) {
                          "An Idempotency-Key has 1 to " + std::to_string(longest_key) +
                              " printable letters without blanks, quotes or backslashes.");
   }
-  const std::string request_digest = digest(request.method + " " + request.path + "\n" +
-                                            request.content_type + "\n" + request.body);
+  const std::string query = print_query(request);
+  const std::string address = request.path + (query.empty() ? "" : "?" + query);
+  const std::string request_digest =
+      digest(request.method + " " + address + "\n" + request.content_type + "\n" + request.body);
   Reply reply;
   const std::string owned = request.user + " " + key;  // nobody sees what others were answered
   const auto earlier = service_.once(owned, request_digest, [&]() -> std::optional<std::string> {
-    reply = run_route(route, service_, request);
+    reply = change(route, request);
     if (reply.status >= 300)
       return std::nullopt;  // nothing was done: it may be mended and sent again
     return print_reply(reply);
@@ -154,19 +156,31 @@ Reply Api::once(const Route& route, const Request& request) {
   return reply;
 }
 
-/// Does it where the thing is still as the client has read it.
-Reply Api::if_unchanged(const Route& route, const Request& request) {
-  const std::scoped_lock hold(changes_);
+/// Does it, if the client names a state of the thing only where it is still in that state.
+Reply Api::change(const Route& route, const Request& request) {
+  if (!request.field("if-match").empty()) {
+    if (auto refusal = refuse_unread(request)) return std::move(*refusal);
+  }
+  return run_route(route, service_, request);
+}
+
+/// Why not to change a thing of which the client names another state than it has now, in whichever
+/// form it was read.
+std::optional<Reply> Api::refuse_unread(const Request& request) {
   Request reading;
   reading.method = "GET";
   reading.path = request.path;
   const auto current = find_route(reading);
   if (!current) return problem_reply(400, "There is nothing to match at this address.");
-  const Reply now = run_route(**current, service_, reading);
-  if (now.status != 200 || !names_tag(request.field("if-match"), entity_tag(now.body))) {
-    return problem_reply(412, "It has changed since it was read, or is not there.");
+  for (const std::string_view form : {(*current)->media, (*current)->also}) {
+    if (form.empty()) continue;
+    reading.fields["accept"] = form;
+    const Reply now = run_route(**current, service_, reading);
+    if (now.status == 200 && names_tag(request.field("if-match"), entity_tag(now.body))) {
+      return std::nullopt;
+    }
   }
-  return run_route(route, service_, request);
+  return problem_reply(412, "It has changed since it was read, or is not there.");
 }
 
 std::string Api::metrics() const {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <mutex>
+#include <optional>
 
 #include "server/access/tokens.hpp"
 #include "server/api/metrics.hpp"
@@ -26,13 +28,14 @@ class Api {
   std::optional<Reply> refuse(const Route& route, Request& request);
   Reply answer(const Route& route, Request& request);
   Reply once(const Route& route, const Request& request);
-  Reply if_unchanged(const Route& route, const Request& request);
+  Reply change(const Route& route, const Request& request);
+  std::optional<Reply> refuse_unread(const Request& request);
 
   Service& service_;
   Tokens* tokens_;
   Metrics metrics_;
   std::function<TransportFigures()> sockets_;
-  std::mutex changes_;  ///< between the look at a thing and its change nobody else changes it
+  std::mutex changes_;  ///< one at a time: what one has looked at no other changes meanwhile
 };
 
 }  // namespace repose::server

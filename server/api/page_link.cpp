@@ -38,4 +38,12 @@ std::string next_page(const Route& route, const Request& request, const std::str
   return address + std::string(field->name) + "=" + percent_encoded(cursor);
 }
 
+std::string print_query(const Request& request) {
+  std::string text;
+  for (const auto& [name, value] : request.query) {
+    text += (text.empty() ? "" : "&") + percent_encoded(name) + "=" + percent_encoded(value);
+  }
+  return text;
+}
+
 }  // namespace repose::server

@@ -11,4 +11,7 @@ namespace repose::server {
 /// query for it.
 std::string next_page(const Route& route, const Request& request, const std::string& cursor);
 
+/// The query as one text, equal where the fields and their values are: "a=1&b=2", by their names.
+std::string print_query(const Request& request);
+
 }  // namespace repose::server
