@@ -22,10 +22,8 @@ Refusal not_found(std::int64_t id) {
 }
 
 Refusal invalid(const char* what, Problems problems) {
-  const std::string count = std::to_string(problems.size());
-  return {Refusal::Kind::invalid,
-          std::string(what) + " has " + count + (count == "1" ? " problem" : " problems"),
-          std::move(problems)};
+  std::string message = std::string(what) + " has " + counted(problems);
+  return {Refusal::Kind::invalid, std::move(message), std::move(problems)};
 }
 
 /// The schedule, and that the calibration to start from is one that can be.

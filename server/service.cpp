@@ -43,10 +43,7 @@ Refusal not_found(std::int64_t id) {
 }
 
 Refusal invalid(const std::string& what, const Problems& problems) {
-  return {Refusal::Kind::invalid,
-          what + " has " + std::to_string(problems.size()) +
-              (problems.size() == 1 ? " problem" : " problems"),
-          problems};
+  return {Refusal::Kind::invalid, what + " has " + counted(problems), problems};
 }
 
 /// The study's canonical document, or what is wrong with it.

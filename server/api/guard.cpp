@@ -5,6 +5,8 @@
 #include <charconv>
 #include <system_error>
 
+#include "server/letters.hpp"
+
 namespace repose::server {
 
 namespace {
@@ -12,13 +14,7 @@ namespace {
 constexpr std::size_t most_fields = 64;
 constexpr std::size_t longest_target = 8000;  // bytes; the HTTP library reads 8192
 
-char lower(char letter) {
-  return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-}
-
-bool same_name(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, {}, lower, lower);
-}
+bool same_name(std::string_view a, std::string_view b) { return lower_case(a) == lower_case(b); }
 
 /// The host of a Host field, without its port.
 std::string_view without_port(std::string_view host) {
@@ -47,12 +43,6 @@ bool is_token(std::string_view text) {
   static constexpr std::string_view letters =
       "!#$%&'*+-.^_`|~0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
   return !text.empty() && text.find_first_not_of(letters) == std::string_view::npos;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
-  text.remove_prefix(begin);
-  return text.substr(0, text.find_last_not_of(" \t") + 1);
 }
 
 /// Takes the first line off a text of lines that each end in CR LF.

@@ -1,6 +1,5 @@
 #include "server/api/http_server.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <iostream>
@@ -14,17 +13,11 @@
 #include "server/api/guard.hpp"
 #include "server/api/problem.hpp"
 #include "server/api/reply_text.hpp"
+#include "server/letters.hpp"
 
 namespace repose::server {
 
 namespace {
-
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-  });
-  return text;
-}
 
 Request request_of(const httplib::Request& request) {
   Request result{.method = request.method,

@@ -9,6 +9,7 @@
 #include "server/api/problem.hpp"
 #include "server/api/query.hpp"
 #include "server/api/route.hpp"
+#include "server/letters.hpp"
 
 namespace repose::server {
 
@@ -182,12 +183,7 @@ std::optional<PathParts> match(std::string_view pattern, std::string_view path) 
 
 /// A media type without its parameters, in lower case.
 std::string media_type(std::string_view content_type) {
-  std::string type(content_type.substr(0, content_type.find(';')));
-  while (!type.empty() && type.back() == ' ') type.pop_back();
-  std::ranges::transform(type, type.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-  });
-  return type;
+  return lower_case(trimmed(content_type.substr(0, content_type.find(';'))));
 }
 
 }  // namespace

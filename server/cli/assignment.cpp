@@ -9,6 +9,7 @@
 #include "engine/catalogue.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/place.hpp"
+#include "server/letters.hpp"
 #include "server/report/number_text.hpp"
 
 namespace repose::server {
@@ -22,13 +23,6 @@ using engine::Unit;
 namespace {
 
 std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t";
-  const std::size_t first = text.find_first_not_of(blank);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
 
 std::string accepted_units(const Unit& unit) { return listed(units_like(unit)); }
 

@@ -8,7 +8,7 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/text_table.hpp"
 #include "server/jobs/clock.hpp"
-#include "server/json/job_json.hpp"
+#include "server/json/text.hpp"
 #include "server/json/token_json.hpp"
 
 namespace repose::server {

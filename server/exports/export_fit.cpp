@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "server/exports/export.hpp"
-#include "server/json/job_json.hpp"
 #include "server/json/place.hpp"
+#include "server/json/text.hpp"
 #include "server/nightly/continuation.hpp"
 
 namespace repose::server {

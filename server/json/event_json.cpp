@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "server/json/job_json.hpp"
 #include "server/json/text.hpp"
 
 namespace repose::server {

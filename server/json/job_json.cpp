@@ -1,26 +1,11 @@
 #include "server/json/job_json.hpp"
 
-#include <array>
-#include <cstdio>
-#include <ctime>
-#include <optional>
-
 #include "engine/evaluate.hpp"
 #include "server/json/text.hpp"
 
 namespace repose::server {
 
 namespace {
-
-Json time_or_null(const std::optional<std::int64_t>& time) {
-  return time ? Json(print_time(*time)) : Json(nullptr);
-}
-
-/// A document this program has written, as a value.
-Json document(const std::optional<std::string>& text) {
-  if (!text) return nullptr;
-  return Json::parse(*text, nullptr, false);
-}
 
 Json summary(const db::CalibrationRecord& record) {
   Json json;
@@ -31,29 +16,17 @@ Json summary(const db::CalibrationRecord& record) {
   json["started_at"] = time_or_null(record.started_at);
   json["finished_at"] = time_or_null(record.finished_at);
   json["misfit"] = record.misfit ? number_or_null(*record.misfit) : Json(nullptr);
-  json["progress"] = document(record.progress);
+  json["progress"] = document_or_null(record.progress);
   json["error"] = record.error ? Json(*record.error) : Json(nullptr);
   return json;
 }
 
 }  // namespace
 
-std::string print_time(std::int64_t microseconds) {
-  const std::time_t seconds = microseconds / 1'000'000;
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  std::array<char, 40> text{};
-  const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &utc);
-  std::array<char, 16> fraction{};
-  std::snprintf(
-      fraction.data(), fraction.size(), ".%06dZ", static_cast<int>(microseconds % 1'000'000));
-  return std::string(text.data(), length) + fraction.data();
-}
-
 std::string print_job(const db::CalibrationRecord& record) {
   Json json = summary(record);
-  json["study"] = document(record.request);
-  json["fit"] = document(record.fit);
+  json["study"] = document_or_null(record.request);
+  json["fit"] = document_or_null(record.fit);
   return to_text(json);
 }
 
@@ -72,8 +45,8 @@ Page print_used(const std::vector<db::UsedEvaluation>& used, int limit) {
     item["engine_version"] = evaluation.engine_version;
     item["seconds"] = number_or_null(evaluation.seconds);
     item["created_at"] = print_time(evaluation.created_at);
-    item["question"] = document(evaluation.question);
-    item["answer"] = document(evaluation.answer);
+    item["question"] = document_or_null(evaluation.question);
+    item["answer"] = document_or_null(evaluation.answer);
     items.push_back(std::move(item));
   }
   return print_page(std::move(items), limit, used.empty() ? Json() : Json(used.back().ordinal));
@@ -82,7 +55,7 @@ Page print_used(const std::vector<db::UsedEvaluation>& used, int limit) {
 std::string print_best_fits(const std::vector<db::CalibrationRecord>& records) {
   Json items = Json::array();
   for (const auto& record : records) {
-    Json fit = document(record.fit);
+    Json fit = document_or_null(record.fit);
     Json item;
     item["calibration"] = record.id;
     item["name"] = record.name;

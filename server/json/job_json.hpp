@@ -25,7 +25,4 @@ std::string print_best_fits(const std::vector<db::CalibrationRecord>& records);
 std::string print_health(const std::string& database,
                          const std::map<std::string, std::int64_t>& jobs);
 
-/// "2026-11-23T14:05:09.120000Z" from microseconds since 1970.
-std::string print_time(std::int64_t microseconds);
-
 }  // namespace repose::server

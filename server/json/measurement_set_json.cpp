@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "server/json/csv.hpp"
-#include "server/json/job_json.hpp"
 #include "server/json/place.hpp"
 #include "server/json/study.hpp"
 #include "server/json/text.hpp"
+#include "server/letters.hpp"
 
 namespace repose::server {
 
@@ -35,12 +35,6 @@ constexpr std::array<Column, 11> columns{{{"experiment", false},
                                           {"source", false},
                                           {"settings", false}}};
 
-std::string trimmed(std::string_view text) {
-  const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
-  text.remove_prefix(begin);
-  return std::string(text.substr(0, text.find_last_not_of(" \t") + 1));
-}
-
 /// A number where it is one; else the text, of which the reader of measurements will complain.
 Json number_in(const std::string& text) {
   const char* const end = text.data() + text.size();
@@ -61,9 +55,9 @@ Json settings_in(std::string_view cell) {
     const std::string_view part = cell.substr(0, end);
     cell.remove_prefix(std::min(end + 1, cell.size()));
     const std::size_t equals = std::min(part.find('='), part.size());
-    const std::string value = trimmed(part.substr(std::min(equals + 1, part.size())));
+    const std::string value(trimmed(part.substr(std::min(equals + 1, part.size()))));
     const std::size_t blank = value.find(' ');
-    const std::string name = trimmed(part.substr(0, equals));
+    const std::string name(trimmed(part.substr(0, equals)));
     if (blank == std::string::npos) {
       settings[name] = value;  // a choice by its name
     } else {
@@ -96,7 +90,7 @@ Json read_rows(const CsvRows& rows, ProblemList& problems) {
   Json measurements = Json::array();
   std::vector<const Column*> head;
   for (const std::string& cell : rows.front()) {
-    const std::string name = trimmed(cell);
+    const std::string name(trimmed(cell));
     const auto found = std::ranges::find(columns, std::string_view(name), &Column::name);
     if (found == columns.end()) {
       problems.add({"line 1",
@@ -115,7 +109,7 @@ Json read_rows(const CsvRows& rows, ProblemList& problems) {
     }
     Json measurement = Json::object();
     for (std::size_t k = 0; k < std::min(rows[i].size(), head.size()); ++k) {
-      const std::string cell = trimmed(rows[i][k]);
+      const std::string cell(trimmed(rows[i][k]));
       if (cell.empty() || head[k] == nullptr) continue;
       const std::string name(head[k]->name);
       measurement[name] = head[k]->number      ? number_in(cell)

@@ -5,6 +5,7 @@
 
 #include "server/json/catalogue_schema.hpp"
 #include "server/json/schemas.hpp"
+#include "server/letters.hpp"
 
 namespace repose::server {
 
@@ -126,14 +127,6 @@ Json print_operation(const Route& route) {
                             {"4XX", problem},
                             {"5XX", std::move(problem)}};
   return operation;
-}
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  for (char& letter : result) {
-    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-  }
-  return result;
 }
 
 }  // namespace

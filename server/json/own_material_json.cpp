@@ -1,6 +1,5 @@
 #include "server/json/own_material_json.hpp"
 
-#include "server/json/job_json.hpp"
 #include "server/json/material_library.hpp"
 #include "server/json/place.hpp"
 #include "server/json/study.hpp"

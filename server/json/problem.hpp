@@ -15,4 +15,9 @@ struct Problem {
 
 using Problems = std::vector<Problem>;
 
+/// "1 problem", "3 problems"
+inline std::string counted(const Problems& problems) {
+  return std::to_string(problems.size()) + (problems.size() == 1 ? " problem" : " problems");
+}
+
 }  // namespace repose::server

@@ -6,8 +6,8 @@
 
 #include "server/json/calibration_json.hpp"
 #include "server/json/codec.hpp"
-#include "server/json/job_json.hpp"
 #include "server/json/place.hpp"
+#include "server/json/text.hpp"
 
 namespace repose::server {
 
@@ -68,14 +68,6 @@ void read_study(const Place& place, const Resolve& resolve, NightlySchedule& sch
   }
 }
 
-Json time_or_null(const std::optional<std::int64_t>& time) {
-  return time ? Json(print_time(*time)) : Json(nullptr);
-}
-
-Json document(const std::optional<std::string>& text) {
-  return text ? Json::parse(*text, nullptr, false) : Json(nullptr);
-}
-
 Json print_followed(const Followed& followed) {
   const Drift& drift = followed.drift;
   return {{"name", followed.name},
@@ -100,7 +92,7 @@ Json night_json(const db::NightRecord& night) {
           {"incumbent", night.incumbent ? Json(*night.incumbent) : Json(nullptr)},
           {"calibration", night.calibration ? Json(*night.calibration) : Json(nullptr)},
           {"diagnosis", night.diagnosis ? Json(*night.diagnosis) : Json(nullptr)},
-          {"result", document(night.result)}};
+          {"result", document_or_null(night.result)}};
 }
 
 Json promotion_json(const db::PromotionRecord& promotion) {
@@ -111,7 +103,7 @@ Json promotion_json(const db::PromotionRecord& promotion) {
 }
 
 Json standing_json(const ScheduleStanding& standing, bool whole) {
-  Json json = document(standing.record.request);
+  Json json = document_or_null(standing.record.request);
   if (!whole) json.erase("study");
   json["id"] = standing.record.id;
   json["created_at"] = print_time(standing.record.created_at);
@@ -120,7 +112,7 @@ Json standing_json(const ScheduleStanding& standing, bool whole) {
   json["next_at"] = time_or_null(standing.next_at);
   json["promoted"] = standing.promoted ? promotion_json(*standing.promoted) : Json(nullptr);
   json["last_night"] = standing.last ? night_json(*standing.last) : Json(nullptr);
-  if (whole) json["fit"] = standing.fit ? document(standing.fit->fit) : Json(nullptr);
+  if (whole) json["fit"] = standing.fit ? document_or_null(standing.fit->fit) : Json(nullptr);
   return json;
 }
 

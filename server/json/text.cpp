@@ -1,6 +1,9 @@
 #include "server/json/text.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <ctime>
 #include <set>
 #include <utility>
 #include <vector>
@@ -168,6 +171,26 @@ Page print_page(Json items, int limit, const Json& last) {
 }
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string print_time(std::int64_t microseconds) {
+  const std::time_t seconds = microseconds / 1'000'000;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 40> text{};
+  const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &utc);
+  std::array<char, 16> fraction{};
+  std::snprintf(
+      fraction.data(), fraction.size(), ".%06dZ", static_cast<int>(microseconds % 1'000'000));
+  return std::string(text.data(), length) + fraction.data();
+}
+
+Json time_or_null(const std::optional<std::int64_t>& microseconds) {
+  return microseconds ? Json(print_time(*microseconds)) : Json(nullptr);
+}
+
+Json document_or_null(const std::optional<std::string>& text) {
+  return text ? Json::parse(*text, nullptr, false) : Json(nullptr);
+}
 
 std::string pointer_to(std::string_view parent, std::string_view member) {
   std::string result(parent);

@@ -48,6 +48,14 @@ Page print_page(Json items, int limit, const Json& last);
 /// A number, null where it is not finite: JSON has no NaN.
 Json number_or_null(double value);
 
+/// "2026-11-23T14:05:09.120000Z" from microseconds since 1970.
+std::string print_time(std::int64_t microseconds);
+
+// What a row of the store may lack is null in its document.
+Json time_or_null(const std::optional<std::int64_t>& microseconds);
+/// A document that this program has written, as a value.
+Json document_or_null(const std::optional<std::string>& text);
+
 /// The pointer (RFC 6901) to a member, to an element.
 std::string pointer_to(std::string_view parent, std::string_view member);
 std::string pointer_to(std::string_view parent, std::size_t index);

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "server/json/job_json.hpp"
 #include "server/json/place.hpp"
 #include "server/json/text.hpp"
 
@@ -12,10 +11,6 @@ namespace {
 
 Json whole_or_null(const std::optional<std::int64_t>& value) {
   return value ? Json(*value) : Json(nullptr);
-}
-
-Json time_or_null(const std::optional<std::int64_t>& time) {
-  return time ? Json(print_time(*time)) : Json(nullptr);
 }
 
 constexpr std::size_t longest = 1000;  // bytes of a text in the file

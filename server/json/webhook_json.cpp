@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "server/json/event_json.hpp"
-#include "server/json/job_json.hpp"
 #include "server/json/place.hpp"
 #include "server/json/text.hpp"
 #include "server/webhooks/post.hpp"

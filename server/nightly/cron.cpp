@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "server/letters.hpp"
+
 namespace repose::server {
 
 namespace {
@@ -29,14 +31,6 @@ constexpr std::array<Field, 5> fields{{{"minute", 0, 59},
                                        {"day of month", 1, 31},
                                        {"month", 1, 12, month_names},
                                        {"day of week", 0, 7, weekday_names}}};
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  for (char& letter : result) {
-    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-  }
-  return result;
-}
 
 std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> parts;

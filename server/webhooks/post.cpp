@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <sys/socket.h>
 
+#include "server/letters.hpp"
 #include "server/webhooks/address.hpp"
 
 namespace repose::server {
@@ -22,10 +23,8 @@ struct End {
 std::string part(CURLU* url, CURLUPart which) {
   char* text = nullptr;
   if (curl_url_get(url, which, &text, 0) != CURLUE_OK || text == nullptr) return {};
-  std::string result(text);
+  std::string result = lower_case(std::string_view(text));
   curl_free(text);
-  std::ranges::transform(
-      result, result.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
   return result;
 }
 
