@@ -46,46 +46,56 @@ Refusal invalid(const std::string& what, const Problems& problems) {
   return {Refusal::Kind::invalid, what + " has " + counted(problems), problems};
 }
 
-/// The study's canonical document, or what is wrong with it.
-Answer<Calibration> read_study(std::string_view study) {
-  auto parsed = parse_calibration(study);
-  if (parsed) return std::move(parsed).value();
-  return Unexpected{invalid("the study", parsed.error())};
+/// A study with what it names in its place, and where that is from.
+struct Submitted {
+  Calibration calibration;
+  db::SourceRecord source;
+};
+
+Answer<Submitted> read_submission(db::Store& store, std::string_view submission) {
+  const auto resolved = resolve_submission(store, submission);
+  if (!resolved) return Unexpected{resolved.error()};
+  auto calibration = parse_calibration(resolved->study);
+  if (!calibration) return Unexpected{invalid("the study", calibration.error())};
+  return Submitted{*std::move(calibration), resolved->source};
+}
+
+std::int64_t add_calibration(db::Store& store, const Submitted& submitted) {
+  const std::string request = print_calibration(submitted.calibration);
+  return db::MeasurementStore(store).add_calibration(
+      submitted.calibration.name, request, digest(request), submitted.source, microseconds_now());
 }
 
 }  // namespace
 
 Answer<std::string> Service::submit(std::string_view study) {
-  const auto submission = resolve_submission(state_->store, study);
-  if (!submission) return Unexpected{submission.error()};
-  const auto calibration = read_study(submission->study);
-  if (!calibration) return Unexpected{calibration.error()};
-  const std::string request = print_calibration(*calibration);
-  const std::int64_t id =
-      db::MeasurementStore(state_->store)
-          .add_calibration(
-              calibration->name, request, digest(request), submission->source, microseconds_now());
+  const auto submitted = read_submission(state_->store, study);
+  if (!submitted) return Unexpected{submitted.error()};
+  const std::int64_t id = add_calibration(state_->store, *submitted);
   if (state_->scheduler) state_->scheduler->submit({Job::Kind::calibration, id});
   return this->calibration(id);
+}
+
+Answer<std::string> Service::study(std::string_view submission) const {
+  const auto submitted = read_submission(state_->store, submission);
+  if (!submitted) return Unexpected{submitted.error()};
+  return print_calibration(submitted->calibration);
 }
 
 Answer<std::string> Service::calibrate(std::string_view study,
                                        const std::stop_token& stop,
                                        const CalibrationEvents& events) {
-  const auto calibration = read_study(study);
-  if (!calibration) return Unexpected{calibration.error()};
-  const std::string request = print_calibration(*calibration);
-  const auto unfinished = state_->store.unfinished(digest(request));
-  const std::int64_t id =
-      unfinished ? unfinished->id
-                 : state_->store.add_calibration(
-                       calibration->name, request, digest(request), microseconds_now());
+  const auto submitted = read_submission(state_->store, study);
+  if (!submitted) return Unexpected{submitted.error()};
+  const auto unfinished =
+      state_->store.unfinished(digest(print_calibration(submitted->calibration)));
+  const std::int64_t id = unfinished ? unfinished->id : add_calibration(state_->store, *submitted);
   if (!state_->store.start(id, microseconds_now())) {
     return Unexpected{Refusal{Refusal::Kind::wrong_state,
                               "calibration " + std::to_string(id) + " is running already",
                               {}}};
   }
-  state_->run(id, *calibration, stop, events);
+  state_->run(id, submitted->calibration, stop, events);
   return this->calibration(id);
 }
 

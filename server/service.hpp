@@ -101,8 +101,11 @@ class Service {
   /// study may have "material" and "measurement_set": {"name", "version"} in place of measurements.
   Answer<std::string> submit(std::string_view study);
 
-  /// Runs a calibration here and now (or takes up an unfinished one with the same study); the
-  /// answer is its document.
+  /// What submit() would calibrate: the study with the grain and the measurements that it names.
+  [[nodiscard]] Answer<std::string> study(std::string_view submission) const;
+
+  /// Runs a calibration here and now (or takes up an unfinished one with the same study, which may
+  /// name what submit() takes); the answer is its document.
   Answer<std::string> calibrate(std::string_view study,
                                 const std::stop_token& stop,
                                 const CalibrationEvents& events);

@@ -25,16 +25,19 @@ ServiceOptions options_of(const CalibrateCommand& command) {
 }
 
 Answer<std::string> run(const CalibrateCommand& command,
-                        const StudyInput& study,
+                        const std::string& text,
                         const Interrupt& interrupt) {
   Service service(options_of(command));
-  ProgressDisplay display(study.calibration, std::cerr, isatty(STDERR_FILENO) == 1);
+  const auto study = service.study(text);
+  if (!study) return study;
+  const auto calibration = parse_calibration(*study);
+  ProgressDisplay display(*calibration, std::cerr, isatty(STDERR_FILENO) == 1);
   CalibrationEvents events;
   events.progress = [&](const calibrator::Progress& progress) { display.progress(progress); };
   events.trial = [&](std::size_t done, std::size_t all, bool stored) {
     display.trial(done, all, stored);
   };
-  auto answer = service.calibrate(study.text, interrupt.token(), events);
+  auto answer = service.calibrate(text, interrupt.token(), events);
   display.finish();
   return answer;
 }
@@ -51,13 +54,16 @@ int stopped(const CalibrateCommand& command) {
   return exit_code::interrupted;
 }
 
-int calibrate(const CalibrateCommand& command, const StudyInput& study) {
+}  // namespace
+
+int calibrate_text(const CalibrateCommand& command, const std::string& study) {
   const bool json = command.form == Form::json;
   const Interrupt interrupt;
   const auto answer = run(command, study, interrupt);
   if (!answer) {
     if (interrupt.happened()) return stopped(command);
-    return report_error({answer.error().message, answer.error().problems}, json);
+    return report_error(
+        {command.study.string() + ": " + answer.error().message, answer.error().problems}, json);
   }
   const auto document = parse_document(*answer);
   if (json) std::cout << *answer << "\n";
@@ -80,18 +86,10 @@ int calibrate(const CalibrateCommand& command, const StudyInput& study) {
                                                                : exit_code::done;
 }
 
-}  // namespace
-
 int calibrate_command(const CalibrateCommand& command) {
-  const auto study = read_study(command.study);
-  if (!study) return report_error(study.error(), command.form == Form::json);
-  return calibrate(command, *study);
-}
-
-int calibrate_text(const CalibrateCommand& command, const std::string& study) {
-  auto calibration = parse_calibration(study);
-  if (calibration) return calibrate(command, {study, *std::move(calibration)});
-  return report_error({"the study has problems", calibration.error()}, command.form == Form::json);
+  const auto text = read_text(command.study);
+  if (!text) return report_error(text.error(), command.form == Form::json);
+  return calibrate_text(command, *text);
 }
 
 }  // namespace repose::server

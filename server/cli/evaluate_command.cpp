@@ -103,9 +103,9 @@ Result<Trial, InputError> trial_of(const EvaluateCommand& command) {
   } else {
     const auto study = read_study(command.study);
     if (!study) return Unexpected{study.error()};
-    trial.parameters = study_parameters(study->calibration, given);
-    trial.experiment.fidelity = study->calibration.budget.fidelity;
-    take_study_settings(study->calibration, trial.experiment);
+    trial.parameters = study_parameters(*study, given);
+    trial.experiment.fidelity = study->budget.fidelity;
+    take_study_settings(*study, trial.experiment);
   }
   trial.experiment.fidelity = command.fidelity.value_or(trial.experiment.fidelity);
   for (const std::string& text : command.settings) {

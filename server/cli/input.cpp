@@ -40,17 +40,13 @@ Result<std::string, InputError> read_text(const fs::path& path) {
   return std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
 }
 
-Result<StudyInput, InputError> read_study(const fs::path& path) {
-  auto text = read_text(path);
+Result<calibrator::Calibration, InputError> read_study(const fs::path& path) {
+  const auto text = read_text(path);
   if (!text) return Unexpected{text.error()};
   auto calibration = parse_calibration(*text);
-  if (!calibration) {
-    const std::size_t count = calibration.error().size();
-    return Unexpected{InputError{path.string() + " is no study: " + std::to_string(count) +
-                                     (count == 1 ? " problem" : " problems"),
-                                 std::move(calibration).error()}};
-  }
-  return StudyInput{*std::move(text), *std::move(calibration)};
+  if (calibration) return *std::move(calibration);
+  return Unexpected{InputError{path.string() + " is no study: " + counted(calibration.error()),
+                               std::move(calibration).error()}};
 }
 
 int report_error(const InputError& error, bool json) {

@@ -19,12 +19,8 @@ struct InputError {
 /// The whole of a file; "-" is standard input.
 engine::Result<std::string, InputError> read_text(const std::filesystem::path& path);
 
-struct StudyInput {
-  std::string text;
-  calibrator::Calibration calibration;
-};
-
-engine::Result<StudyInput, InputError> read_study(const std::filesystem::path& path);
+/// A study that names nothing which is kept elsewhere.
+engine::Result<calibrator::Calibration, InputError> read_study(const std::filesystem::path& path);
 
 /// Prints to standard error; as a JSON object to standard output too where one is awaited there.
 /// Returns the exit code.

@@ -45,16 +45,22 @@ int print(const ScheduleCommand& command,
 
 int schedule_add_command(const ScheduleCommand& command) {
   const bool json = command.form == Form::json;
-  auto study = read_study(command.study);
-  if (!study) return report_error(study.error(), json);
-  Json document{{"name", command.name.empty() ? study->calibration.name : command.name},
+  const auto text = read_text(command.study);
+  if (!text) return report_error(text.error(), json);
+  Service service(options_of(command, false));
+  const auto study = service.study(*text);
+  if (!study) {
+    return report_error(
+        {command.study.string() + ": " + study.error().message, study.error().problems}, json);
+  }
+  // As it was written: each night takes the measurements that are kept then.
+  Json document{{"name", command.name.empty() ? parse_calibration(*study)->name : command.name},
                 {"cron", command.cron},
                 {"time_zone", command.time_zone},
                 {"jitter_minutes", command.jitter_minutes},
                 {"catch_up_hours", command.catch_up_hours},
-                {"study", Json::parse(print_calibration(study->calibration))}};
+                {"study", Json::parse(*text)}};
   if (command.calibration > 0) document["start_from"] = command.calibration;
-  Service service(options_of(command, false));
   return print(command,
                command.id == 0 ? service.add_schedule(to_text(document))
                                : service.replace_schedule(command.id, to_text(document)),

@@ -9,11 +9,14 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "server/service.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using Catch::Contains;
 using Json = nlohmann::json;
+using repose::server::Service;
+using repose::server::ServiceOptions;
 using repose::tests::repose_program;
 using repose::tests::TemporaryFolder;
 
@@ -34,6 +37,13 @@ std::string run(const std::string& arguments, int wanted = 0) {
   REQUIRE(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == wanted);
   return output;
+}
+
+/// For a service that looks into the same database; while it lives, the database is its own.
+ServiceOptions options(const TemporaryFolder& folder) {
+  ServiceOptions result;
+  result.database = folder / "a.db";
+  return result;
 }
 
 std::string study(const TemporaryFolder& folder, double restitution) {
@@ -73,6 +83,50 @@ TEST_CASE("nights are scheduled, run, looked up and undone from the command line
   CHECK_THAT(run("schedule remove 1" + db), Contains("removed"));
   run(night);
   CHECK(Json::parse(run("schedule history 1 --json" + db))["items"].size() == 2);
+}
+
+TEST_CASE("a study that names a material and a set is taken as it is sent to the service",
+          "[end_to_end]") {
+  const TemporaryFolder folder;
+  const std::string db = " --db " + (folder / "a.db").string();
+  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
+  Json document = Json::parse(file);
+  const auto keep = [&](double restitution) {
+    document["measurements"][0]["value"] = restitution;
+    const Json set{{"material", "our-beads"}, {"measurements", document["measurements"]}};
+    Service service(options(folder));
+    REQUIRE(service.put_measurement_set("may", set.dump(), std::nullopt).has_value());
+  };
+  const Json beads{{"title", "beads"}, {"grain", document["materials"]["grain"]}};
+  REQUIRE(Service(options(folder)).put_material("our-beads", beads.dump(), false).has_value());
+  keep(0.6);
+  Json named = document;
+  named.erase("measurements");
+  named["materials"].erase("grain");
+  named["material"] = "our-beads";
+  named["measurement_set"] = {{"name", "may"}};
+  const std::string path = (folder / "named.json").string();
+  std::ofstream(path) << named;
+
+  run("calibrate " + path + db + " --no-pictures --report " + (folder / "report.html").string());
+  {
+    const Service service(options(folder));
+    const Json fits = Json::parse(service.fits({.material = "our-beads"}, 1).document);
+    REQUIRE(fits["items"].size() == 1);
+    CHECK(fits["items"][0]["provenance"]["measurement_set"]["name"] == "may");
+  }
+  const std::string night = "nightly --once --all" + db;
+  run("schedule add " + path + db);
+  CHECK_THAT(run(night), Contains("first"));
+  keep(0.7);
+  CHECK_THAT(run(night),
+             Contains("moved"));  // each night takes the measurements that are kept then
+
+  named["measurement_set"]["name"] = "june";
+  std::ofstream(path) << named;
+  for (const char* words : {"calibrate ", "schedule add "}) {
+    CHECK_THAT(run(words + path + db, 2), Contains("no measurement set 'june'"));
+  }
 }
 
 TEST_CASE("a fit is exported, and the database backed up, examined and restored", "[end_to_end]") {
