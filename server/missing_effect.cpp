@@ -15,10 +15,9 @@
 #include "server/json/diagnosis_json.hpp"
 #include "server/json/evaluation_json.hpp"
 #include "server/json/fit_json.hpp"
-#include "server/json/job_json.hpp"
+#include "server/json/missing_effect_json.hpp"
 #include "server/json/missing_effect_request.hpp"
 #include "server/json/place.hpp"
-#include "server/json/text.hpp"
 
 namespace repose::server {
 
@@ -55,30 +54,6 @@ Answer<Finished> finished(const db::Store& store, std::int64_t id) {
   auto fit = parse_fit(*calibration, *record->fit);
   if (!fit) return Unexpected{refusal(Refusal::Kind::wrong_state, fit.error())};
   return Finished{*std::move(calibration), *std::move(fit)};
-}
-
-Json document(const std::optional<std::string>& text) {
-  return text ? Json::parse(*text, nullptr, false) : Json(nullptr);
-}
-
-Json print_record(const db::DiagnosisRecord& record, bool whole) {
-  Json json{{"id", record.id},
-            {"calibration", record.calibration},
-            {"state", record.state},
-            {"created_at", print_time(record.created_at)},
-            {"finished_at", record.finished_at ? Json(print_time(*record.finished_at)) : nullptr},
-            {"request", document(record.request)},
-            {"progress", document(record.progress)},
-            {"error", record.error ? Json(*record.error) : nullptr}};
-  const Json result = document(record.result);
-  if (whole) {
-    json["result"] = result;
-  } else {
-    for (const char* member : {"verdict", "grade", "text"}) {
-      json[member] = result.is_object() ? result.value(member, Json(nullptr)) : Json(nullptr);
-    }
-  }
-  return json;
 }
 
 std::vector<engine::Evaluation> evaluations_of(const std::vector<db::UsedEvaluation>& used) {
@@ -201,7 +176,7 @@ Answer<std::string> diagnosis(const db::Store& store, std::int64_t id) {
     return Unexpected{
         refusal(Refusal::Kind::not_found, "there is no diagnosis " + std::to_string(id))};
   }
-  return to_text(print_record(*record, true));
+  return print_diagnosis_record(*record);
 }
 
 Answer<std::string> diagnoses(const db::Store& store, std::int64_t calibration) {
@@ -209,11 +184,7 @@ Answer<std::string> diagnoses(const db::Store& store, std::int64_t calibration) 
     return Unexpected{refusal(Refusal::Kind::not_found,
                               "there is no calibration " + std::to_string(calibration))};
   }
-  Json items = Json::array();
-  for (const db::DiagnosisRecord& record : store.diagnoses(calibration)) {
-    items.push_back(print_record(record, false));
-  }
-  return to_text(Json{{"items", std::move(items)}});
+  return print_diagnosis_records(store.diagnoses(calibration));
 }
 
 Answer<std::string> extension_study(const db::Store& store,

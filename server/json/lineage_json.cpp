@@ -1,7 +1,9 @@
 #include "server/json/lineage_json.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "server/json/comparison_json.hpp"
 #include "server/json/text.hpp"
 
 namespace repose::server {
@@ -32,7 +34,49 @@ LineageItem read_item(const Json& json) {
   return item;
 }
 
+/// What a study says of the calibration that it extends; nothing of one that begins anew.
+Json extension_in(const std::string& study) {
+  const Json request = document_or_null(study);
+  return request.is_object() ? request.value("extends", Json::object()) : Json::object();
+}
+
+Json print_verdict(const db::DiagnosisRecord& record) {
+  const Json result = document_or_null(record.result);
+  return {{"diagnosis", record.id},
+          {"verdict", result.value("verdict", Json(nullptr))},
+          {"grade", result.value("grade", Json(nullptr))},
+          {"text", result.value("text", Json(nullptr))}};
+}
+
+Json print_item(const Descent& descent) {
+  const db::CalibrationRecord& record = descent.calibration;
+  const Json extends = extension_in(record.request);
+  const Json fit = document_or_null(record.fit);
+  Json item{{"calibration", record.id},
+            {"parent", extends.value("calibration", Json(nullptr))},
+            {"effect", extends.value("effect", Json(nullptr))},
+            {"diagnosis", extends.value("diagnosis", Json(nullptr))},
+            {"name", record.name},
+            {"state", record.state},
+            {"created_at", print_time(record.created_at)},
+            {"finished_at", time_or_null(record.finished_at)}};
+  item["quality"] = descent.comparison ? print_fit_quality(*descent.comparison) : Json(nullptr);
+  item["parameters"] = fit.is_object() ? fit.value("parameters", Json::array()) : Json::array();
+  item["verdict"] = descent.diagnosis ? print_verdict(*descent.diagnosis) : Json(nullptr);
+  return item;
+}
+
 }  // namespace
+
+std::optional<std::int64_t> parent_of(const std::string& study) {
+  return whole(extension_in(study).value("calibration", Json(nullptr)));
+}
+
+std::string print_lineage(std::int64_t asked, const std::vector<Descent>& descents) {
+  Json items = Json::array();
+  for (const Descent& descent : descents) items.push_back(print_item(descent));
+  return to_text(Json{{"asked", asked}, {"items", std::move(items)}});
+}
 
 engine::Result<std::vector<LineageItem>, std::string> parse_lineage(std::string_view text) {
   ProblemList problems;

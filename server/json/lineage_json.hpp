@@ -1,4 +1,4 @@
-/// A lineage's document -> structs, for those who show it.
+/// A lineage <-> document: calibrations that come from one another.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,26 @@
 #include <string_view>
 #include <vector>
 
+#include "calibrator/comparison.hpp"
+#include "db/record.hpp"
 #include "engine/result.hpp"
 #include "server/json/missing_effect_json.hpp"
 
 namespace repose::server {
+
+/// The calibration that a study extends.
+std::optional<std::int64_t> parent_of(const std::string& study);
+
+/// One calibration of the store with what came of it.
+struct Descent {
+  db::CalibrationRecord calibration;
+  std::optional<calibrator::Comparison> comparison;  ///< of one that is done
+  std::optional<db::DiagnosisRecord> diagnosis;      ///< its last finished one
+};
+
+/// {"asked","items":[{"calibration","parent","effect","diagnosis","name","state","created_at",
+/// "finished_at","quality","parameters","verdict"}]}
+std::string print_lineage(std::int64_t asked, const std::vector<Descent>& descents);
 
 /// One calibration of a lineage.
 struct LineageItem {

@@ -39,7 +39,37 @@ std::string trend_text(const Json& json) {
          " per factor e (" + short_number(std::abs(z)) + " standard errors)";
 }
 
+Json head_of(const db::DiagnosisRecord& record) {
+  return {{"id", record.id},
+          {"calibration", record.calibration},
+          {"state", record.state},
+          {"created_at", print_time(record.created_at)},
+          {"finished_at", time_or_null(record.finished_at)},
+          {"request", document_or_null(record.request)},
+          {"progress", document_or_null(record.progress)},
+          {"error", record.error ? Json(*record.error) : Json(nullptr)}};
+}
+
 }  // namespace
+
+std::string print_diagnosis_record(const db::DiagnosisRecord& record) {
+  Json json = head_of(record);
+  json["result"] = document_or_null(record.result);
+  return to_text(json);
+}
+
+std::string print_diagnosis_records(const std::vector<db::DiagnosisRecord>& records) {
+  Json items = Json::array();
+  for (const db::DiagnosisRecord& record : records) {
+    const Json result = document_or_null(record.result);
+    Json item = head_of(record);
+    for (const char* member : {"verdict", "grade", "text"}) {
+      item[member] = result.is_object() ? result.value(member, Json(nullptr)) : Json(nullptr);
+    }
+    items.push_back(std::move(item));
+  }
+  return to_text(Json{{"items", std::move(items)}});
+}
 
 FitQuality read_quality(const Json& json) {
   return {number(json.at("misfit")),

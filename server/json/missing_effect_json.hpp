@@ -1,4 +1,4 @@
-/// Comparisons' and diagnoses' documents -> structs, for those who show them.
+/// Comparisons' documents -> structs, for those who show them; diagnoses of the store <-> documents.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,16 @@
 #include <string_view>
 #include <vector>
 
+#include "db/record.hpp"
 #include "engine/result.hpp"
 #include "server/json/text.hpp"
 
 namespace repose::server {
+
+/// {"id","calibration","state","created_at","finished_at","request","progress","error","result"}
+std::string print_diagnosis_record(const db::DiagnosisRecord& record);
+/// {"items":[... with the verdict, its grade and text in place of the result]}
+std::string print_diagnosis_records(const std::vector<db::DiagnosisRecord>& records);
 
 /// What the service keeps of a diagnosis.
 struct DiagnosisRecordDocument {

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 #include <optional>
+#include <regex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -196,6 +197,22 @@ TEST_CASE("no file of the server reaches the linear algebra through another's he
   }
   std::set<std::string> seen;
   CHECK(way_to("Eigen/", "calibrator/answer.cpp", seen).ends_with(".hpp"));
+}
+
+TEST_CASE("the use cases hand documents on as text: values of JSON stay where they are made",
+          "[architecture]") {
+  // Beside server/json what prints for people and for other codes.
+  const std::vector<std::string_view> users{"server/json/", "server/cli/", "server/exports/"};
+  const std::regex value("\\bJson\\b");
+  for (const auto& file : files_below("server/", {".hpp", ".cpp"})) {
+    if (begins_with_one_of(file.path, users)) continue;
+    const auto lines = lines_of(file.text);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (std::regex_search(lines[i], value)) {
+        FAIL_CHECK(file.path + ":" + std::to_string(i + 1) + ": " + lines[i]);
+      }
+    }
+  }
 }
 
 TEST_CASE("a wrong include is found, with its file, line and rule", "[architecture]") {
