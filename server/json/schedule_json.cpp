@@ -218,8 +218,6 @@ std::vector<Followed> parse_followed(std::string_view report) {
   return result;
 }
 
-std::string print_night(const db::NightRecord& night) { return to_text(night_json(night)); }
-
 Page print_nights(const std::vector<db::NightRecord>& nights, int limit) {
   Json items = Json::array();
   for (const db::NightRecord& night : nights) items.push_back(night_json(night));

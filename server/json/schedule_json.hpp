@@ -67,9 +67,7 @@ std::string print_night_report(const calibrator::Calibration& study, const Night
 /// The quantities that a night's result followed.
 std::vector<Followed> parse_followed(std::string_view report);
 
-/// A night: {"id","schedule","planned_at","state","outcome",...,"result"}.
-std::string print_night(const db::NightRecord& night);
-/// {"items","next"}
+/// {"items":[{"id","schedule","planned_at","state","outcome",...,"result"}],"next"}
 Page print_nights(const std::vector<db::NightRecord>& nights, int limit);
 /// {"items"}
 std::string print_promotions(const std::vector<db::PromotionRecord>& promotions);

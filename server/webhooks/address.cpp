@@ -76,11 +76,4 @@ bool is_public(const sockaddr& address) {
   return false;
 }
 
-bool is_public(const std::string& digits) {
-  in_addr four{};
-  if (inet_pton(AF_INET, digits.c_str(), &four) == 1) return is_public(four);
-  in6_addr six{};
-  return inet_pton(AF_INET6, digits.c_str(), &six) == 1 && is_public(six);
-}
-
 }  // namespace repose::server

@@ -12,7 +12,4 @@ namespace repose::server {
 /// hold one of these within (IPv4 in IPv6), and for all that are no internet addresses.
 bool is_public(const sockaddr& address);
 
-/// The same of an address in digits; false where the text is none.
-bool is_public(const std::string& digits);
-
 }  // namespace repose::server

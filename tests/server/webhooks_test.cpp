@@ -1,5 +1,7 @@
 // Events reach the addresses that want them: signed, in order, each until it has arrived.
+#include <arpa/inet.h>
 #include <fstream>
+#include <netinet/in.h>
 #include <set>
 #include <stdexcept>
 
@@ -240,6 +242,23 @@ TEST_CASE("a quantity that drifts is told", "[server]") {
   CHECK(db::EventStore(scene.store).drift_alarms() == 1);
 }
 
+namespace {
+
+/// Of either family, as a socket would be opened to it.
+bool is_public_in_digits(const char* digits) {
+  sockaddr_in four{};
+  four.sin_family = AF_INET;
+  if (inet_pton(AF_INET, digits, &four.sin_addr) == 1) {
+    return is_public(reinterpret_cast<const sockaddr&>(four));
+  }
+  sockaddr_in6 six{};
+  six.sin6_family = AF_INET6;
+  REQUIRE(inet_pton(AF_INET6, digits, &six.sin6_addr) == 1);
+  return is_public(reinterpret_cast<const sockaddr&>(six));
+}
+
+}  // namespace
+
 TEST_CASE("an address within a network is told from a public one", "[server]") {
   for (const char* inside : {"127.0.0.1",
                              "127.255.255.255",
@@ -264,11 +283,9 @@ TEST_CASE("an address within a network is told from a public one", "[server]") {
                              "64:ff9b::7f00:1",
                              "2002:7f00:1::",
                              "2001::1",
-                             "2001:db8::1",
-                             "localhost",
-                             ""}) {
+                             "2001:db8::1"}) {
     INFO(inside);
-    CHECK_FALSE(is_public(std::string(inside)));
+    CHECK_FALSE(is_public_in_digits(inside));
   }
   for (const char* outside : {"8.8.8.8",
                               "172.15.0.1",
@@ -280,7 +297,7 @@ TEST_CASE("an address within a network is told from a public one", "[server]") {
                               "2001:200::1",
                               "2606:4700::1"}) {
     INFO(outside);
-    CHECK(is_public(std::string(outside)));
+    CHECK(is_public_in_digits(outside));
   }
 }
 
