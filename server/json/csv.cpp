@@ -9,9 +9,10 @@ namespace {
 /// One letter after the other; what is quoted may hold anything.
 class Reader {
  public:
-  CsvRows read(std::string_view text) {
+  std::vector<CsvRow> read(std::string_view text) {
     for (std::size_t i = 0; i < text.size(); ++i) {
       const char letter = text[i];
+      if (letter == '\n') ++line_;
       const bool doubled = i + 1 < text.size() && text[i + 1] == '"';
       if (quoted_ && letter == '"' && doubled) {
         cell_ += text[++i];
@@ -20,7 +21,7 @@ class Reader {
       } else if (quoted_ || (letter != ',' && letter != '\n' && letter != '\r')) {
         cell_ += letter;
       } else if (letter == ',') {
-        row_.push_back(std::exchange(cell_, {}));
+        row_.cells.push_back(std::exchange(cell_, {}));
       } else if (letter == '\n') {
         end_row();
       }
@@ -31,13 +32,14 @@ class Reader {
 
  private:
   void end_row() {
-    row_.push_back(std::exchange(cell_, {}));
-    if (row_.size() > 1 || !row_[0].empty()) rows_.push_back(row_);
-    row_.clear();
+    row_.cells.push_back(std::exchange(cell_, {}));
+    if (row_.cells.size() > 1 || !row_.cells[0].empty()) rows_.push_back(std::move(row_));
+    row_ = {line_, {}};
   }
 
-  CsvRows rows_;
-  std::vector<std::string> row_;
+  std::size_t line_ = 1;
+  std::vector<CsvRow> rows_;
+  CsvRow row_{line_, {}};
   std::string cell_;
   bool quoted_ = false;
 };
@@ -54,7 +56,7 @@ std::string quoted(const std::string& cell) {
 
 }  // namespace
 
-CsvRows read_csv(std::string_view text) {
+std::vector<CsvRow> read_csv(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a mark that spreadsheets write
   return Reader().read(text);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -85,31 +86,34 @@ std::vector<std::string_view> column_names() {
   return names;
 }
 
+/// Where a person finds a row.
+std::string line_of(const CsvRow& row) { return "line " + std::to_string(row.line); }
+
 /// The measurements of a table, as a study has them; complains of its form.
-Json read_rows(const CsvRows& rows, ProblemList& problems) {
+Json read_rows(const std::vector<CsvRow>& rows, ProblemList& problems) {
   Json measurements = Json::array();
   std::vector<const Column*> head;
-  for (const std::string& cell : rows.front()) {
+  for (const std::string& cell : rows.front().cells) {
     const std::string name(trimmed(cell));
     const auto found = std::ranges::find(columns, std::string_view(name), &Column::name);
     if (found == columns.end()) {
-      problems.add({"line 1",
+      problems.add({line_of(rows.front()),
                     "there is no such column" + did_you_mean(name, column_names()),
                     "\"" + name.substr(0, longest_name) + "\"",
                     listed(column_names())});
     }
     head.push_back(found == columns.end() ? nullptr : &*found);
   }
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (rows[i].size() > head.size()) {
-      problems.add({"line " + std::to_string(i + 1),
+  for (const CsvRow& row : std::span(rows).subspan(1)) {
+    if (row.cells.size() > head.size()) {
+      problems.add({line_of(row),
                     "the line has more cells than the head",
-                    std::to_string(rows[i].size()),
+                    std::to_string(row.cells.size()),
                     std::to_string(head.size())});
     }
     Json measurement = Json::object();
-    for (std::size_t k = 0; k < std::min(rows[i].size(), head.size()); ++k) {
-      const std::string cell(trimmed(rows[i][k]));
+    for (std::size_t k = 0; k < std::min(row.cells.size(), head.size()); ++k) {
+      const std::string cell(trimmed(row.cells[k]));
       if (cell.empty() || head[k] == nullptr) continue;
       const std::string name(head[k]->name);
       measurement[name] = head[k]->number      ? number_in(cell)
@@ -122,14 +126,14 @@ Json read_rows(const CsvRows& rows, ProblemList& problems) {
 }
 
 /// "/measurements/2/value" -> "line 4: value": where a person finds it in the table.
-std::string place_in_table(const std::string& pointer) {
+std::string place_in_table(const std::string& pointer, const std::vector<CsvRow>& rows) {
   constexpr std::string_view begin = "/measurements/";
   if (!pointer.starts_with(begin)) return pointer;
   std::size_t index = 0;
   const char* const end = pointer.data() + pointer.size();
   const auto result = std::from_chars(pointer.data() + begin.size(), end, index);
   std::string rest(result.ptr, end);
-  return "line " + std::to_string(index + 2) + (rest.empty() ? "" : ": " + rest.substr(1));
+  return line_of(rows.at(index + 1)) + (rest.empty() ? "" : ": " + rest.substr(1));
 }
 
 std::string read_material(const Place& place) {
@@ -186,7 +190,7 @@ engine::Result<MeasurementSet, Problems> parse_measurement_set(std::string_view 
 engine::Result<MeasurementSet, Problems> parse_measurement_table(std::string_view text,
                                                                  const std::string& material) {
   ProblemList problems;
-  const CsvRows rows = read_csv(text);
+  const std::vector<CsvRow> rows = read_csv(text);
   if (rows.empty()) {
     problems.add({"line 1", "the table is empty", "", "a head: " + listed(column_names())});
     return engine::Unexpected{problems.all()};
@@ -194,7 +198,7 @@ engine::Result<MeasurementSet, Problems> parse_measurement_table(std::string_vie
   const Json measurements = read_rows(rows, problems);
   check_measurements(measurements, problems);
   Problems all = problems.all();
-  for (Problem& problem : all) problem.pointer = place_in_table(problem.pointer);
+  for (Problem& problem : all) problem.pointer = place_in_table(problem.pointer, rows);
   if (!all.empty()) return engine::Unexpected{std::move(all)};
   return MeasurementSet{material, to_text(measurements)};
 }
