@@ -17,7 +17,8 @@ namespace repose::server {
 
 namespace {
 
-constexpr std::size_t longest_name = 100;
+constexpr std::size_t longest_name = 100;     // of a material
+constexpr std::size_t longest_set_name = 64;  // see is_name()
 
 /// A column of a table: the member of a measurement of that name, and whether it is a number.
 struct Column {
@@ -249,7 +250,7 @@ engine::Result<Submission, Problems> parse_submission(std::string_view text) {
     const Place name = members.required("name", "the name of a set");
     const Place version = members.optional("version");
     members.no_others();
-    if (name.exists()) submission.set = name.text(longest_name);
+    if (name.exists()) submission.set = name.text(longest_set_name);
     if (version.exists()) submission.version = version.whole(1, INT64_MAX);
     if (json->contains("measurements")) {
       problems.add({"/measurement_set",
