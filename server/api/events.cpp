@@ -27,10 +27,10 @@ Reply follow(const Service& service,
   const auto asked = query.whole("after", 0);
   const auto last = query.whole_field("last-event-id", 0);
   if (!query.problems().empty()) return query.refusal();
-  if (wants_page(request)) {
-    return reply_of(service.events(calibration, limit, asked.value_or(0)));
-  }
   auto after = last ? last : asked;  // a client that comes again keeps its first address
+  if (wants_page(request)) {
+    return reply_of(service.events(calibration, limit, after.value_or(0)));
+  }
   if (!after && calibration) after = 0;
   auto source = service.event_stream(calibration, after);
   if (!source) return problem_reply(source.error());

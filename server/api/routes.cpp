@@ -24,7 +24,10 @@ constexpr std::array<QueryField, 2> evaluation_fields{{
     {"after", "only items after this one: the answer's `next`", true, 0},
 }};
 constexpr std::array<QueryField, 2> event_fields{{
-    {"after", "only events after this one (also as Last-Event-ID)", true, 0},
+    {"after",
+     "only events after this one (Last-Event-ID, where it is given, before this)",
+     true,
+     0},
     {"limit", "of a page, how many items, 1 to 200 (50 where it is not given)"},
 }};
 constexpr std::array<QueryField, 5> fit_fields{{

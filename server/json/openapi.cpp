@@ -1,6 +1,8 @@
 #include "server/json/openapi.hpp"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 #include "server/json/catalogue_schema.hpp"
@@ -80,7 +82,80 @@ void add_form(Json& body, std::string_view also) {
   if (!also.empty()) body["content"][std::string(also)] = {{"schema", {{"type", "string"}}}};
 }
 
-Json print_parameters(const Route& route) {
+bool reads(const Route& route) { return route.method == "GET"; }
+
+/// A field of the head that the protocol has for many routes, whatever they are about.
+struct HeadField {
+  std::string_view component;
+  std::string_view name;
+  std::string_view meaning;
+  bool (*is_for)(const Route& route, std::span<const Route> routes);
+};
+
+constexpr std::array<HeadField, 5> head_fields{{
+    {"IfNoneMatch",
+     "If-None-Match",
+     "the ETag of an earlier answer, or several: 304 and no body where it is still the same",
+     [](const Route& route, std::span<const Route>) { return reads(route); }},
+    {"LastEventId",
+     "Last-Event-ID",
+     "as ?after, and before it: what a client sends that was cut off",
+     [](const Route& route, std::span<const Route>) { return route.also == "text/event-stream"; }},
+    {"IfMatch",
+     "If-Match",
+     "the ETag of what was read, in any of its forms: where that has changed nothing is done, and "
+     "the answer is 412",
+     [](const Route& route, std::span<const Route> routes) {
+       return (route.method == "PUT" || route.method == "DELETE") &&
+              std::ranges::any_of(routes, [&](const Route& other) {
+                return reads(other) && other.pattern == route.pattern;
+              });
+     }},
+    {"IdempotencyKey",
+     "Idempotency-Key",
+     "1 to 64 printable letters: the same request with the same key is done once within a day, and "
+     "answered again as it was then, with Idempotency-Replayed: true",
+     [](const Route& route, std::span<const Route>) { return !reads(route); }},
+    {"RequestId",
+     "X-Request-Id",
+     "what the answer and the log call the request, 1 to 64 printable letters; else one is made up",
+     [](const Route&, std::span<const Route>) { return true; }},
+}};
+
+Json parameter_reference(std::string_view component) {
+  return {{"$ref", "#/components/parameters/" + std::string(component)}};
+}
+
+Json component_parameters() {
+  Json result = Json::object();
+  for (const HeadField& field : head_fields) {
+    result[std::string(field.component)] = {{"name", field.name},
+                                            {"in", "header"},
+                                            {"description", field.meaning},
+                                            {"schema", {{"type", "string"}}}};
+  }
+  return result;
+}
+
+constexpr const char* security_scheme = "token";
+
+Json component_security() {
+  return {{security_scheme,
+           {{"type", "http"},
+            {"scheme", "bearer"},
+            {"description",
+             "As `repose token create` prints it. A service without tokens asks for none."}}}};
+}
+
+/// The scope that a token must give; nothing where anyone may.
+Json print_security(const Route& route) {
+  const Scope needed = needed_scope(route);
+  if (needed == Scope::nothing) return Json::array();
+  const auto scope = scope_names.at(static_cast<std::size_t>(needed));
+  return Json::array({Json{{security_scheme, Json::array({scope})}}});
+}
+
+Json print_parameters(const Route& route, std::span<const Route> routes) {
   const auto whole = [](std::int64_t least) {
     return Json{{"type", "integer"}, {"minimum", least}};
   };
@@ -100,14 +175,17 @@ Json print_parameters(const Route& route) {
                       {"description", field.meaning},
                       {"schema", field.whole ? whole(field.least) : Json{{"type", "string"}}}});
   }
+  for (const HeadField& field : head_fields) {
+    if (field.is_for(route, routes)) result.push_back(parameter_reference(field.component));
+  }
   return result;
 }
 
-Json print_operation(const Route& route) {
-  Json operation{{"operationId", route.name}, {"summary", route.summary}};
-  if (Json parameters = print_parameters(route); !parameters.empty()) {
-    operation["parameters"] = std::move(parameters);
-  }
+Json print_operation(const Route& route, std::span<const Route> routes) {
+  Json operation{{"operationId", route.name},
+                 {"summary", route.summary},
+                 {"security", print_security(route)},
+                 {"parameters", print_parameters(route, routes)}};
   if (!route.request.empty()) {
     operation["requestBody"] = content("application/json", reference(route.request));
     operation["requestBody"]["required"] = true;
@@ -121,11 +199,19 @@ Json print_operation(const Route& route) {
   add_form(success, route.also);
   success["description"] = "The answer.";
   if (route.success == 202) success["description"] = "Taken on; the answer says how it stands.";
+  if (reads(route)) {
+    success["headers"]["ETag"] = {{"description", "Of this body; a stream has none."},
+                                  {"schema", {{"type", "string"}}}};
+  }
   Json problem = content("application/problem+json", reference("problem"));
   problem["description"] = "What went wrong.";
-  operation["responses"] = {{std::to_string(route.success), std::move(success)},
-                            {"4XX", problem},
-                            {"5XX", std::move(problem)}};
+  Json& responses = operation["responses"];
+  responses[std::to_string(route.success)] = std::move(success);
+  if (reads(route)) {
+    responses["304"] = {{"description", "What the client has, by If-None-Match, is still so."}};
+  }
+  responses["4XX"] = problem;
+  responses["5XX"] = std::move(problem);
   return operation;
 }
 
@@ -134,7 +220,7 @@ Json print_operation(const Route& route) {
 std::string print_openapi(std::span<const Route> routes) {
   Json paths = Json::object();
   for (const Route& route : routes) {
-    paths[std::string(route.pattern)][lower_case(route.method)] = print_operation(route);
+    paths[std::string(route.pattern)][lower_case(route.method)] = print_operation(route, routes);
   }
   return to_text(
       Json{{"openapi", "3.1.0"},
@@ -145,7 +231,10 @@ std::string print_openapi(std::span<const Route> routes) {
               "route table by `repose schema`: do not edit."},
              {"version", "1"}}},
            {"paths", std::move(paths)},
-           {"components", {{"schemas", component_schemas()}}}},
+           {"components",
+            {{"securitySchemes", component_security()},
+             {"parameters", component_parameters()},
+             {"schemas", component_schemas()}}}},
       2);
 }
 

@@ -127,6 +127,9 @@ TEST_CASE("events are also had in pages, and their numbers are checked", "[end_t
   const Json second =
       Json::parse(api.get(path + "/events?limit=1&after=" + first["next"].dump(), page).body);
   CHECK(second["items"][0]["id"].get<int>() > first["items"][1]["id"].get<int>());
+  const httplib::Headers page_after{{"Accept", "application/json"},
+                                    {"Last-Event-ID", first["next"].dump()}};
+  CHECK(Json::parse(api.get(path + "/events?limit=1", page_after).body) == second);
   CHECK(api.get("/v1/calibrations/99/events", page).status == 404);
   CHECK(api.get("/v1/events?after=-1", page).status == 400);
   CHECK(api.get("/v1/events", {{"Last-Event-ID", "x"}}).status == 400);

@@ -23,6 +23,10 @@ void collect_references(const Json& json, std::set<std::string>& into) {
   }
 }
 
+const Json& operation(const std::string& method, const std::string& path) {
+  return description()["paths"][path][method];
+}
+
 /// The names of all members below, references followed.
 std::set<std::string> members_below(const Json& json, std::set<std::string>& seen) {
   std::set<std::string> names;
@@ -34,6 +38,19 @@ std::set<std::string> members_below(const Json& json, std::set<std::string>& see
       names.merge(members_below(description().at(Json::json_pointer(reference.substr(1))), seen));
     }
     if (value.is_structured()) names.merge(members_below(value, seen));
+  }
+  return names;
+}
+
+/// The names of the fields of the head that an operation is described with.
+std::set<std::string> head_fields(const std::string& method, const std::string& path) {
+  std::set<std::string> names;
+  for (const Json& parameter : operation(method, path)["parameters"]) {
+    if (!parameter.contains("$ref")) continue;
+    const auto reference = parameter["$ref"].get<std::string>();
+    const Json& field = description().at(Json::json_pointer(reference.substr(1)));
+    CHECK(field["in"] == "header");
+    names.insert(field["name"].get<std::string>());
   }
   return names;
 }
@@ -74,4 +91,25 @@ TEST_CASE("the schemas of requests hold no regular expression", "[server]") {
       CHECK_FALSE(members.contains("pattern"));
     }
   }
+}
+
+TEST_CASE("every route says which token it needs", "[server]") {
+  CHECK(description()["components"]["securitySchemes"]["token"]["scheme"] == "bearer");
+  CHECK(operation("get", "/v1/calibrations")["security"] == Json::parse(R"([{"token":["read"]}])"));
+  CHECK(operation("post", "/v1/calibrations")["security"] ==
+        Json::parse(R"([{"token":["submit"]}])"));
+  CHECK(operation("post", "/v1/webhooks")["security"] == Json::parse(R"([{"token":["admin"]}])"));
+  CHECK(operation("get", "/livez")["security"] == Json::array());
+}
+
+TEST_CASE("every route says which fields of the head it reads", "[server]") {
+  using Names = std::set<std::string>;
+  CHECK(head_fields("get", "/v1/calibrations") == Names{"If-None-Match", "X-Request-Id"});
+  CHECK(head_fields("get", "/v1/events") ==
+        Names{"If-None-Match", "Last-Event-ID", "X-Request-Id"});
+  CHECK(head_fields("post", "/v1/calibrations") == Names{"Idempotency-Key", "X-Request-Id"});
+  CHECK(head_fields("put", "/v1/measurement-sets/{name}") ==
+        Names{"Idempotency-Key", "If-Match", "X-Request-Id"});
+  CHECK(operation("get", "/v1/calibrations")["responses"].contains("304"));
+  CHECK_FALSE(operation("post", "/v1/calibrations")["responses"].contains("304"));
 }
