@@ -94,6 +94,25 @@ class Proxy {
 
 }  // namespace
 
+TEST_CASE("the unit that is shipped answers for the name that the site passes on", "[end_to_end]") {
+  const std::string site = read(REPOSE_SOURCE_DIR "/server/deploy/nginx-repose.conf");
+  const std::string unit = read(REPOSE_SOURCE_DIR "/server/deploy/repose.service");
+  std::smatch passed_on, answered_for;
+  REQUIRE(std::regex_search(site, passed_on, std::regex("server_name ([^;]+);")));
+  REQUIRE(std::regex_search(
+      unit, answered_for, std::regex("\nExecStart=[^\n]* serve [^\n]*--name ([^ \n]+)")));
+  CHECK(passed_on[1] == answered_for[1]);
+}
+
+TEST_CASE("every token that the shipped files make is made beside the database that is served",
+          "[end_to_end]") {
+  for (const char* name : {"nginx-repose.conf", "repose.service"}) {
+    INFO(name);
+    const std::string text = read(REPOSE_SOURCE_DIR "/server/deploy/" + std::string(name));
+    CHECK(std::regex_search(text, std::regex("repose token create [^\n]* --db [^\n]+")));
+  }
+}
+
 TEST_CASE("the site that is shipped serves, streams, and limits", "[end_to_end][slow]") {
   if (access("/usr/sbin/nginx", X_OK) != 0) {
     WARN("nginx is not installed: not tried");
