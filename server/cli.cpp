@@ -26,7 +26,7 @@ constexpr const char* main_footer =
     "A five-minute start:\n"
     "  repose evaluate kettle --fidelity draft      one virtual experiment with a reference grain\n"
     "  repose calibrate study.json                  calibrate, print the answer, write a report\n"
-    "  repose serve                                 the same as a service with a web page\n\n"
+    "  repose serve                                 the same as a service with an HTTP API\n\n"
     "Exit code: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.";
 
 constexpr const char* evaluate_footer =

@@ -4,7 +4,7 @@
 namespace repose::server {
 
 void add_serve(CLI::App& app, ServeCommand& options, Work& work) {
-  CLI::App& command = *app.add_subcommand("serve", "Start the service: HTTP API and web page");
+  CLI::App& command = *app.add_subcommand("serve", "Start the service: HTTP API and nights");
   command.add_option("--host", options.host, "Address to listen on")->capture_default_str();
   command.add_option("--port", options.port, "Port; 0 is any free one")
       ->capture_default_str()

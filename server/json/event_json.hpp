@@ -12,10 +12,10 @@ namespace repose::server {
 /// {"items":[{"id","created_at","kind","data"}],"next"}
 Page print_events(const std::vector<db::EventRecord>& events, int limit);
 
-/// id, event and data of each.
 /// What an event says beside its number and kind: an object.
 std::string print_event_data(const db::EventRecord& event);
 
+/// id, event and data of each.
 std::string print_event_stream(const std::vector<db::EventRecord>& events);
 
 }  // namespace repose::server
