@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <variant>
 
@@ -62,13 +63,19 @@ double number_of(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
+/// A number that counts something.
+std::uint64_t count_of(const Json& json) {
+  if (!json.is_number_unsigned()) throw std::invalid_argument("a count is a whole number from 0");
+  return json.get<std::uint64_t>();
+}
+
 Effort read_effort(const Json& json) {
   Effort effort;
   for (const EffortField& field : effort_fields) {
     const auto found = json.find(field.name);
     if (found == json.end()) continue;
     if (const auto* whole = std::get_if<0>(&field.member)) {
-      effort.** whole = found->get<std::uint64_t>();
+      effort.** whole = count_of(*found);
     } else {
       effort.*std::get<1>(field.member) = number_of(*found);
     }

@@ -133,7 +133,10 @@ TEST_CASE("a text that is no answer is an evaluation that crashed", "[server]") 
                            R"({"observations":[]})",
                            R"({"failure":{"kind":"bored"},"effort":{}})",
                            R"({"observations":[{"name":"a","value":"b"}],"effort":{}})",
-                           R"({"observations":[],"effort":{"grains":-1.5e9,"steps":"many"}})",
+                           R"({"observations":[],"effort":{"grains":-1.5e9}})",
+                           R"({"observations":[],"effort":{"grains":1e30}})",
+                           R"({"observations":[],"effort":{"grains":-1}})",
+                           R"({"observations":[],"effort":{"steps":"many"}})",
                            "Segmentation fault"}) {
     INFO(text);
     CHECK(failure_of(parse_answer(kettle(), text)).kind == engine::FailureKind::crashed);
