@@ -350,18 +350,25 @@ std::optional<db::KeptReply> Service::once(
 }
 
 bool Service::ready() {
-  const std::scoped_lock hold(state_->mutex);
-  const auto now = std::chrono::steady_clock::now();
-  if (state_->probed && now - *state_->probed < std::chrono::seconds(1)) return state_->writable;
-  state_->probed = now;
+  Readiness& readiness = state_->readiness;
+  {
+    const std::scoped_lock hold(readiness.mutex);
+    const auto now = std::chrono::steady_clock::now();
+    if (readiness.looked && now - *readiness.looked < std::chrono::seconds(1)) {
+      return readiness.writable;
+    }
+    readiness.looked = now;
+  }
+  bool writable = true;
   try {
     db::probe(state_->store);
-    state_->writable = true;
   } catch (const db::Error& error) {
     std::clog << std::string("repose: not ready: ") + error.what() + "\n";
-    state_->writable = false;
+    writable = false;
   }
-  return state_->writable;
+  const std::scoped_lock hold(readiness.mutex);
+  readiness.writable = writable;
+  return writable;
 }
 
 ServiceFigures Service::figures() const {

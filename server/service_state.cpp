@@ -104,15 +104,29 @@ void Service::State::run_errands(const std::stop_token& stop) {
 }
 
 void Service::State::take_up_stranded() {
-  const std::scoped_lock hold(mutex);
-  std::erase_if(stranded, [this](const Job& job) {
+  std::set<Job> found;
+  {
+    const std::scoped_lock hold(mutex);
+    found = stranded;
+  }
+  for (const Job& job : found) {
     if (job.kind == Job::Kind::calibration) {
       store.requeue(job.id);
     } else {
       store.requeue_diagnosis(job.id);
     }
-    return scheduler->submit(job);  // not where it is still on its way out: then the next time
-  });
+    {
+      // Before it runs: then it may strand again.
+      const std::scoped_lock hold(mutex);
+      stranded.erase(job);
+    }
+    if (!scheduler->submit(job)) strand(job);  // it is still on its way out: then the next time
+  }
+}
+
+void Service::State::strand(const Job& job) {
+  const std::scoped_lock hold(mutex);
+  stranded.insert(job);
 }
 
 Schedule::Cancelled Service::State::cancel(const Job& job) {
@@ -254,8 +268,7 @@ void Service::State::run_job(const Job& job, const std::stop_token& stop) {
   } catch (const std::exception& problem) {
     // The store itself fails (a full disk): the row stays as it is, and is taken up when it can be.
     std::clog << std::string("repose: a job waits for the store: ") + problem.what() + "\n";
-    const std::scoped_lock hold(mutex);
-    stranded.insert(job);
+    strand(job);
   }
 }
 

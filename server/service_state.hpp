@@ -23,6 +23,13 @@
 
 namespace repose::server {
 
+/// Whether the store could be written at the last look.
+struct Readiness {
+  std::mutex mutex;  ///< as State's: never held while the store works
+  std::optional<std::chrono::steady_clock::time_point> looked;
+  bool writable = true;  ///< it has been opened
+};
+
 struct Service::State {
   explicit State(const ServiceOptions& options);
 
@@ -46,16 +53,18 @@ struct Service::State {
   /// Takes a job that a user cancels from the queue, or asks it to stop where it runs.
   Schedule::Cancelled cancel(const Job& job);
   bool take_cancel(const Job& job);
+  void strand(const Job& job);
 
   db::Store store;
   WorkerOptions worker_options;
   std::function<std::int64_t()> clock;
   std::vector<std::string> webhook_hosts;
   Post post;
+  Readiness readiness;
+  std::mutex nights;  ///< held while nights are ended
+  /// Of the two sets, and held for nothing but a look or a change: a request may hold the store's
+  /// when it comes here, so who holds this one must not wait for the store.
   std::mutex mutex;
-  std::optional<std::chrono::steady_clock::time_point> probed;  ///< when ready() looked last
-  bool writable = false;                                        ///< as it found then
-  std::mutex nights;                                            ///< held while nights are ended
   std::set<Job> cancelled;               ///< running ones that a user has cancelled
   std::set<Job> stranded;                ///< that the store failed in the middle of
   std::unique_ptr<Scheduler> scheduler;  // its thread uses all of the above

@@ -2,8 +2,11 @@
 
 #include <condition_variable>
 #include <fstream>
+#include <future>
+#include <memory>
 #include <mutex>
 #include <sstream>
+#include <thread>
 
 #include <catch2/catch.hpp>
 
@@ -187,4 +190,35 @@ TEST_CASE("a free parameter that no measurement feels is named before the search
   CHECK(document.error.find("no measurement feels sliding_friction.coefficient:grain-wall") !=
         std::string::npos);
   CHECK(run == 0);  // nothing of the search
+}
+
+TEST_CASE("a change that is done once does not lock out the look whether the service is ready",
+          "[server]") {
+  for (int round = 0; round < 3; ++round) {
+    const TemporaryFolder folder(TemporaryFolder::fast());
+    // Threads that wait for each other for good are left behind with what they hold.
+    const auto service = std::make_shared<Service>(in(folder));
+    std::vector<std::int64_t> waiting;
+    for (int i = 0; i < 100; ++i) waiting.push_back(read(service->submit(drop_study())).id);
+    std::promise<bool> ended;
+    auto end = ended.get_future();
+    std::thread([service, waiting, ended = std::move(ended)]() mutable {
+      std::promise<bool> found;
+      auto ready = found.get_future();
+      service->once("key", "digest", [&]() -> std::optional<std::string> {
+        std::promise<void> begun;
+        auto begin = begun.get_future();
+        std::thread([service, found = std::move(found), begun = std::move(begun)]() mutable {
+          begun.set_value();
+          found.set_value(service->ready());
+        }).detach();
+        begin.wait();
+        for (const std::int64_t id : waiting) (void)service->cancel(id);
+        return std::string("done");
+      });
+      ended.set_value(ready.get());
+    }).detach();
+    REQUIRE(end.wait_for(std::chrono::minutes(1)) == std::future_status::ready);
+    CHECK(end.get());
+  }
 }
