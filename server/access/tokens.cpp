@@ -70,7 +70,11 @@ std::vector<Token> Tokens::all() {
   const std::scoped_lock hold(mutex_);
   std::error_code missing;
   const auto size = fs::file_size(file_, missing);
-  if (missing == std::errc::no_such_file_or_directory) return {};
+  if (missing == std::errc::no_such_file_or_directory) {
+    if (tokens_.empty()) return {};
+    throw std::runtime_error(file_.string() +
+                             " is gone: put it back, or make a token with `repose token create`");
+  }
   const auto changed = fs::last_write_time(file_);
   if (size == read_size_ && changed == read_at_) return tokens_;
   std::ifstream stream(file_);

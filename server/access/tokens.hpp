@@ -43,8 +43,8 @@ class Tokens {
 
   explicit Tokens(std::filesystem::path file) : file_(std::move(file)) {}
 
-  /// All that were ever made. Throws std::runtime_error where the file cannot be read: then nobody
-  /// gets in.
+  /// All that were ever made. Throws std::runtime_error where the file cannot be read, or is not
+  /// there any more after it has been: then nobody gets in.
   std::vector<Token> all();
 
   /// Makes one; what comes back is what its user sends, and is not to be had again.
@@ -65,7 +65,7 @@ class Tokens {
   std::mutex mutex_;
   std::filesystem::file_time_type read_at_{};
   std::uintmax_t read_size_ = 0;
-  std::vector<Token> tokens_;
+  std::vector<Token> tokens_;  ///< as last read; a file that can be read holds some
 };
 
 }  // namespace repose::server

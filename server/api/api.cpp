@@ -100,7 +100,7 @@ Reply Api::respond(Request request) {
   return reply;
 }
 
-/// Why the one who asks may not, where that is so. As long as there are no tokens nobody needs one.
+/// Why the one who asks may not, where that is so. As long as there were no tokens nobody needs one.
 std::optional<Reply> Api::refuse(const Route& route, Request& request) {
   const Scope needed = needed_scope(route);
   if (tokens_ == nullptr || needed == Scope::nothing || tokens_->all().empty()) return std::nullopt;

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cstdint>
 #include <iostream>
+#include <optional>
 #include <stop_token>
+#include <string>
 #include <string_view>
 
 #include "server/access/tokens.hpp"
@@ -20,6 +23,14 @@ bool is_loopback(std::string_view host) {
   return host == "localhost" || host == "::1" || host.starts_with("127.");
 }
 
+/// The first of its names that others reach it by: its own, or that of a proxy in front.
+std::optional<std::string> public_name(const ServeCommand& command) {
+  if (!is_loopback(command.host)) return command.host;
+  const auto name = std::ranges::find_if_not(command.names, is_loopback);
+  if (name == command.names.end()) return std::nullopt;
+  return *name;
+}
+
 }  // namespace
 
 int serve_command(const ServeCommand& command) {
@@ -33,11 +44,11 @@ int serve_command(const ServeCommand& command) {
   options.evaluation_memory_limit = static_cast<std::uint64_t>(command.memory_limit * (1U << 30U));
   Tokens tokens(Tokens::file_for(command.database));
   const bool open = tokens.all().empty();
-  if (open && !is_loopback(command.host)) {
-    std::cerr
-        << "repose: " << command.host
-        << " can be reached by others, and there are no tokens yet;\n"
-           "  make one with `repose token create NAME --scope submit`, or serve on 127.0.0.1\n";
+  if (const auto name = public_name(command); open && name) {
+    std::cerr << "repose: " << *name
+              << " can be reached by others, and there are no tokens yet;\n"
+                 "  make one with `repose token create NAME --scope submit`, or serve on "
+                 "127.0.0.1 without --name\n";
     return exit_code::misused;
   }
   const Interrupt interrupt;

@@ -148,6 +148,9 @@ TEST_CASE("a file or address that cannot be used is exit code 2 and says why", "
   const Ran open = run(serve, "&1");
   CHECK(open.exit_code == 2);
   CHECK_THAT(open.output, Contains("there are no tokens yet") && Contains("repose token create"));
+  const Ran proxied = run("serve --port 0 --name dem.example --db " + database, "&1");
+  CHECK(proxied.exit_code == 2);
+  CHECK_THAT(proxied.output, Contains("dem.example can be reached by others"));
   REQUIRE(run("token create any --scope submit --db " + database).exit_code == 0);
   const Ran address = run(serve, "&1");
   CHECK(address.exit_code == 2);

@@ -118,3 +118,18 @@ TEST_CASE("a file that holds no tokens lets nobody in", "[server]") {
     CHECK_THROWS_AS(tokens.all(), std::runtime_error);
   }
 }
+
+TEST_CASE("a file of tokens that is gone lets nobody in, one that comes lets its users in",
+          "[server]") {
+  const TemporaryFolder folder;
+  Tokens command(folder / "tokens"), service(folder / "tokens");
+  CHECK(service.all().empty());
+  const std::string text = command.create("ada", Scope::admin, std::nullopt, 100);
+  CHECK(service.find("Bearer " + text));
+  std::filesystem::rename(folder / "tokens", folder / "elsewhere");
+  CHECK_THROWS_AS(service.all(), std::runtime_error);
+  CHECK_THROWS_AS(service.find("Bearer " + text), std::runtime_error);
+  const std::string other = Tokens(folder / "tokens").create("bob", Scope::read, std::nullopt, 100);
+  CHECK(service.find("Bearer " + other));
+  CHECK_FALSE(service.find("Bearer " + text));
+}
