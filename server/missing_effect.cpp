@@ -164,6 +164,8 @@ bool run_diagnosis(db::Store& store,
     return weigh(store, options, *record, stop, events);
   } catch (const db::Error&) {
     throw;  // the store fails, not the diagnosis
+  } catch (const HostFailure&) {
+    throw;
   } catch (const std::exception& problem) {
     store.finish_diagnosis(id, "failed", {}, problem.what(), microseconds_now());
     return true;

@@ -92,7 +92,7 @@ void Service::State::look_for_nights(const std::stop_token& stop) {
   }
 }
 
-/// Takes up jobs that a failing store has cut off, and tells webhooks.
+/// Takes up jobs that a failing store or host has cut off, and tells webhooks.
 void Service::State::run_errands(const std::stop_token& stop) {
   try {
     take_up_stranded();
@@ -217,6 +217,9 @@ void Service::State::run(std::int64_t id,
     if (!interrupted) conclude(id, calibration, fit);
   } catch (const db::Error&) {
     throw;  // the store fails, not the calibration
+  } catch (const HostFailure&) {
+    store.requeue(id);
+    throw;
   } catch (const std::exception& problem) {
     take_cancel({Job::Kind::calibration, id});
     store.finish(id, "failed", {}, {}, problem.what(), microseconds_now());
@@ -266,8 +269,9 @@ void Service::State::run_job(const Job& job, const std::stop_token& stop) {
     const std::scoped_lock hold(nights);
     end_nights(store, worker_options, stop, clock());
   } catch (const std::exception& problem) {
-    // The store itself fails (a full disk): the row stays as it is, and is taken up when it can be.
-    std::clog << std::string("repose: a job waits for the store: ") + problem.what() + "\n";
+    // The store itself fails (a full disk), or the host: the row stays as it is, and is taken up
+    // when it can be.
+    std::clog << std::string("repose: a job waits: ") + problem.what() + "\n";
     strand(job);
   }
 }

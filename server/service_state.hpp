@@ -66,7 +66,7 @@ struct Service::State {
   /// when it comes here, so who holds this one must not wait for the store.
   std::mutex mutex;
   std::set<Job> cancelled;               ///< running ones that a user has cancelled
-  std::set<Job> stranded;                ///< that the store failed in the middle of
+  std::set<Job> stranded;                ///< that store or host failed in the middle of
   std::unique_ptr<Scheduler> scheduler;  // its thread uses all of the above
   std::optional<Watch> night_watch;      // their threads use the scheduler too
   std::optional<Watch> errands;

@@ -32,7 +32,8 @@ InputError no_experiment(const std::string& name);
 /// $REPOSE_DB, else repose/repose.db in $XDG_DATA_HOME or ~/.local/share. The folder is made.
 std::filesystem::path default_database();
 
-/// The file of this program, which starts itself to answer single trials.
+/// This program, which starts itself to answer single trials: the file that runs, not what has been
+/// put in its place since.
 std::filesystem::path own_program();
 
 /// The time now, ISO 8601, UTC.

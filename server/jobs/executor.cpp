@@ -52,21 +52,27 @@ End end_of(const ChildResult& child) {
   return child.exit_code == 0 ? End::answered : End::crashed;
 }
 
+/// Why an answer is none to the question.
+struct Refused {
+  std::string account;
+  bool is_of_the_host = false;
+};
+
 /// The evaluation that answers the question, or why the text holds none.
-engine::Result<Evaluation, std::string> evaluation_in(const std::string& text,
-                                                      const Question& question) {
+engine::Result<Evaluation, Refused> evaluation_in(const std::string& text,
+                                                  const Question& question) {
   const auto answer = parse_attempt_answer(text);
-  if (!answer) return Unexpected{std::string("gave no answer that can be read")};
-  if (answer->key != question.key) return Unexpected{std::string("answered another question")};
+  if (!answer) return Unexpected{Refused{"gave no answer that can be read"}};
+  if (answer->key != question.key) return Unexpected{Refused{"answered another question"}};
   if (answer->attempt != question.attempt) {
-    return Unexpected{std::string("answered in the name of another attempt")};
+    return Unexpected{Refused{"answered in the name of another attempt"}};
   }
   if (answer->engine_version != engine::version()) {
-    return Unexpected{std::string("answered with another engine")};
+    return Unexpected{Refused{"answered with another engine", true}};
   }
   Evaluation evaluation = parse_answer(question.trial, answer->answer);
   if (is_of_the_host(evaluation)) {
-    return Unexpected{std::string("gave an answer that cannot be read")};
+    return Unexpected{Refused{"gave an answer that cannot be read"}};
   }
   return evaluation;
 }
@@ -77,15 +83,20 @@ Attempts conclude(db::Store& store,
                   const Attempted& attempted,
                   double seconds) {
   db::AttemptStore attempts(store);
-  const auto end = [&](End how, const std::string& account) {
+  const auto end = [&](End how, const std::string& account, bool is_of_the_host) {
     const std::string_view name = attempt_end_names.at(static_cast<std::size_t>(how));
     const bool ran =
         attempts.end(question.key, question.attempt, name, account, microseconds_now());
-    return ran ? Attempts{how, {}, account} : Attempts{End::lost, {}, "was given up before"};
+    return ran ? Attempts{how, {}, account, is_of_the_host}
+               : Attempts{End::lost, {}, "was given up before"};
   };
-  if (attempted.end != End::answered) return end(attempted.end, attempted.account);
+  if (attempted.end != End::answered) {
+    return end(attempted.end, attempted.account, attempted.is_of_the_host);
+  }
   const auto evaluation = evaluation_in(attempted.answer, question);
-  if (!evaluation) return end(End::refused, evaluation.error());
+  if (!evaluation) {
+    return end(End::refused, evaluation.error().account, evaluation.error().is_of_the_host);
+  }
   const std::int64_t now = microseconds_now();
   const auto accepted = attempts.accept(question.attempt,
                                         {.key = question.key,
@@ -124,7 +135,7 @@ Executor child_executor(std::filesystem::path program, const ChildLimits& limits
               ChildResult child = run_child(program, print_question(question) + "\n", limits, stop);
               return {end_of(child), std::move(child.output), std::move(child.account)};
             } catch (const std::system_error& problem) {
-              return {End::crashed, {}, problem.what()};
+              return {End::crashed, {}, problem.what(), true};
             }
           }};
 }

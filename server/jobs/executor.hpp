@@ -37,8 +37,9 @@ struct Attempted {
     cancelled
   };
   End end = End::answered;
-  std::string answer = {};   ///< document, as it came
-  std::string account = {};  ///< how it ended, in words
+  std::string answer = {};      ///< document, as it came
+  std::string account = {};     ///< how it ended, in words
+  bool is_of_the_host = false;  ///< no process could be started: that says nothing of the question
 };
 
 /// Of the ends, in their order; as the store has them.
@@ -69,6 +70,7 @@ struct Attempts {
   Attempted::End end = Attempted::End::answered;  ///< of the last one
   std::string answer = {};                        ///< print_answer()'s, which the store has too
   std::string account = {};                       ///< of an end without an answer
+  bool is_of_the_host = false;  ///< nothing was started, or another engine: whatever is asked
 };
 
 /// Has a question answered: each attempt is in the store before it begins, and its answer with its

@@ -130,6 +130,7 @@ void Workers::work(Task& task, const std::stop_token& stop) {
     look_up(task);  // with the store's word for what it took
     return;
   }
+  if (attempts.is_of_the_host) throw HostFailure("the evaluation " + attempts.account);
   task.answer = host_failure(*task.trial, attempts);
   if (attempts.end == End::cancelled) return;
   task.key = attempts.end == End::timed_out ? timed_out_key(task.key) : crashed_key(task.key);

@@ -12,6 +12,7 @@
 #include <optional>
 #include <shared_mutex>
 #include <span>
+#include <stdexcept>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -32,6 +33,12 @@ struct WorkerOptions {
   Wait wait = wait_for;  ///< before another attempt
 };
 
+/// No evaluation can be had here at present: the programs of the host fail, whatever they are asked.
+class HostFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 class Workers {
  public:
   /// After each trial: done and all of the batch, and whether the store had it. Called by one
@@ -43,7 +50,8 @@ class Workers {
   /// The evaluations of a batch in its order. Equal trials run once. A trial whose attempts all
   /// crashed, one that ran past the limit or was cancelled is a Failure of that kind. The first two
   /// are kept under a name of their own, so that a replay meets them too; with another limit, a
-  /// trial that ran past it is run again, as is one that was cancelled.
+  /// trial that ran past it is run again, as is one that was cancelled. Throws HostFailure, and
+  /// keeps nothing of the trial, where it is the host that fails.
   std::vector<engine::Evaluation> run(std::span<const engine::Trial> trials,
                                       const std::stop_token& stop,
                                       const TrialObserver& observer);

@@ -139,6 +139,21 @@ TEST_CASE("a trial that crashed or ran past the limit is not asked again, but wi
   CHECK(processes() == 5);
 }
 
+TEST_CASE("what the host fails at ends a batch, and nothing of it is kept", "[server]") {
+  const TemporaryFolder folder;
+  db::Store store(folder / "a.db", db::Access::write);
+  const std::vector trials{drop(0.1)};
+  const auto other_engine =
+      script(folder, "'" + repose_program + R"(' answer | sed 's/"engine_version":"/&other-/')");
+  for (const std::filesystem::path& program :
+       {other_engine, std::filesystem::path("/nonexistent/program")}) {
+    Workers workers(store, impatient(program, 10));
+    CHECK_THROWS_AS(workers.run(trials, {}, {}), HostFailure);
+  }
+  Workers sound(store, impatient(repose_program, 10));
+  CHECK(restitution(sound.run(trials, {}, {}).at(0)) > 0.5);
+}
+
 TEST_CASE("time spent is the store's word, so that a replay is told the same", "[server]") {
   const TemporaryFolder folder;
   db::Store store(folder / "a.db", db::Access::write);
