@@ -29,7 +29,10 @@ Refusal no_such_set(const std::string& name, const std::optional<std::int64_t>& 
 void take_grain(db::Store& store, ResolvedSubmission& submission) {
   if (!submission.source.material) return;
   const auto own = db::MaterialStore(store).find(*submission.source.material);
-  if (own) submission.study = with_grain(submission.study, own->document);
+  if (!own) return;
+  std::string study = with_grain(submission.study, own->document);
+  submission.takes_grain = study != submission.study;
+  submission.study = std::move(study);
 }
 
 }  // namespace
@@ -58,7 +61,7 @@ Answer<std::string> measurement_set(db::Store& store,
 Answer<ResolvedSubmission> resolve_submission(db::Store& store, std::string_view text) {
   auto submission = parse_submission(text);
   if (!submission) return Unexpected{invalid("the submission has problems", submission.error())};
-  ResolvedSubmission result{submission->study, {submission->material, std::nullopt}};
+  ResolvedSubmission result{submission->study, {submission->material, std::nullopt}, false};
   if (!submission->set) {
     take_grain(store, result);
     return result;

@@ -27,6 +27,7 @@ Answer<std::string> measurement_set(db::Store& store,
 struct ResolvedSubmission {
   std::string study;
   db::SourceRecord source;
+  bool takes_grain = false;  ///< of the material of users that the source names
 };
 Answer<ResolvedSubmission> resolve_submission(db::Store& store, std::string_view text);
 

@@ -1,9 +1,15 @@
 #include "server/own_materials.hpp"
 
+#include <cstdint>
+#include <optional>
+
 #include "db/material_store.hpp"
+#include "db/schedule_store.hpp"
 #include "server/jobs/clock.hpp"
 #include "server/json/material_library.hpp"
 #include "server/json/own_material_json.hpp"
+#include "server/measurements.hpp"
+#include "server/nightly/nights.hpp"
 
 namespace repose::server {
 
@@ -15,6 +21,17 @@ Refusal published(const std::string& name) {
   return {Refusal::Kind::wrong_state,
           "what is published of " + name + " does not change; keep your own under another name",
           {}};
+}
+
+/// The first schedule whose study leaves its grain to that material.
+std::optional<std::int64_t> schedule_that_needs(db::Store& store, const std::string& name) {
+  for (const auto& record : db::ScheduleStore(store).schedules()) {
+    const auto schedule = read_schedule(store, record.request);
+    if (!schedule) continue;
+    const auto study = resolve_submission(store, schedule->submission);
+    if (study && study->takes_grain && study->source.material == name) return record.id;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -68,6 +85,13 @@ Answer<std::string> material(db::Store& store, const std::string& name) {
 
 Answer<std::string> remove_material(db::Store& store, const std::string& name) {
   if (find_material(name) != nullptr) return Unexpected{published(name)};
+  if (const auto schedule = schedule_that_needs(store, name)) {
+    const std::string which = "schedule " + std::to_string(*schedule);
+    return Unexpected{Refusal{Refusal::Kind::wrong_state,
+                              which + " takes its grain from " + name + ": remove " + which +
+                                  ", or give its study a grain, before",
+                              {}}};
+  }
   auto document = material(store, name);
   if (document) db::MaterialStore(store).remove(name);
   return document;

@@ -42,21 +42,19 @@ Answer<NightlySchedule> read(db::Store& store, std::string_view document) {
   return *std::move(schedule);
 }
 
-std::optional<std::int64_t> next_at(db::Store& store,
-                                    const db::ScheduleRecord& record,
-                                    std::int64_t now) {
+std::optional<std::int64_t> next_at(const db::ScheduleRecord& record, std::int64_t now) {
   if (record.removed_at) return std::nullopt;
-  const auto schedule = read_schedule(store, record.request);
-  if (!schedule) return std::nullopt;
+  const auto timetable = parse_timetable(record.request);
+  if (!timetable) return std::nullopt;
   const auto next =
-      next_after(schedule->timetable, std::chrono::sys_seconds(std::chrono::seconds(now / second)));
+      next_after(*timetable, std::chrono::sys_seconds(std::chrono::seconds(now / second)));
   if (!next) return std::nullopt;
   return next->time_since_epoch().count() * second;
 }
 
 ScheduleStanding standing(db::Store& store, const db::ScheduleRecord& record, std::int64_t now) {
   const ScheduleStore schedules(store);
-  ScheduleStanding result{record, next_at(store, record, now), {}, {}, {}};
+  ScheduleStanding result{record, next_at(record, now), {}, {}, {}};
   const auto promotions = schedules.promotions(record.id);
   if (!promotions.empty()) {
     result.promoted = promotions.front();

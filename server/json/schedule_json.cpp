@@ -144,6 +144,17 @@ engine::Result<NightlySchedule, Problems> parse_schedule(std::string_view text,
   return schedule;
 }
 
+engine::Result<Timetable, Problems> parse_timetable(std::string_view text) {
+  ProblemList problems;
+  const auto json = parse_text(text, {}, problems);
+  if (!json) return engine::Unexpected{problems.all()};
+  NightlySchedule schedule{.timetable = {.cron = {}, .zone = *TimeZone::find("UTC")}};
+  Members members(Place(&*json, "", problems));
+  read_timetable(members, schedule);
+  if (!problems.empty()) return engine::Unexpected{problems.all()};
+  return schedule.timetable;
+}
+
 std::string print_schedule(const NightlySchedule& schedule) {
   Json json{{"name", schedule.name},
             {"cron", schedule.cron},

@@ -36,6 +36,9 @@ using Resolve = std::function<engine::Result<std::string, Problems>(std::string_
 engine::Result<NightlySchedule, Problems> parse_schedule(std::string_view text,
                                                          const Resolve& resolve);
 
+/// When the nights of a schedule are, whatever has become of its study.
+engine::Result<Timetable, Problems> parse_timetable(std::string_view text);
+
 /// The document that reads back as this schedule.
 std::string print_schedule(const NightlySchedule& schedule);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -143,17 +144,20 @@ struct Beginning {
   bool too_late = false;
 };
 
-std::optional<Beginning> beginning(db::Store& store,
-                                   const ScheduleRecord& record,
+/// A night comes at its time even where its study cannot be read any more: then it says so.
+std::optional<Beginning> beginning(const ScheduleRecord& record,
                                    std::int64_t last_planned,
                                    Begin which,
                                    std::int64_t now) {
   if (which == Begin::all) return Beginning{now};
-  const auto schedule = read_schedule(store, record.request);
-  if (!schedule) return std::nullopt;
+  const auto timetable = parse_timetable(record.request);
+  if (!timetable) {
+    throw std::runtime_error("its times cannot be read any more: " +
+                             timetable.error().front().message);
+  }
   const std::int64_t since =
       std::max({record.created_at, record.replaced_at.value_or(0), last_planned});
-  const auto night = due(schedule->timetable, record.id, instant(since), instant(now));
+  const auto night = due(*timetable, record.id, instant(since), instant(now));
   if (!night) return std::nullopt;
   return Beginning{microseconds_of(night->planned), night->too_late};
 }
@@ -164,8 +168,7 @@ std::optional<std::int64_t> begin_night(db::Store& store,
                                         std::int64_t now) {
   ScheduleStore schedules(store);
   const auto last = schedules.nights(record.id, 1, std::nullopt);
-  const auto night =
-      beginning(store, record, last.empty() ? 0 : last.front().planned_at, which, now);
+  const auto night = beginning(record, last.empty() ? 0 : last.front().planned_at, which, now);
   if (!night) return std::nullopt;
   const auto running = schedules.running_nights();
   const bool overlaps =

@@ -56,5 +56,5 @@ TEST_CASE("a service whose program is replaced goes on with the one that it is",
   CHECK(document["state"] == "done");
   CHECK(document["fit"]["parameters"].size() == 1);
   const std::string metrics = client->Get("/metrics")->body;
-  CHECK(metrics.find("state=\"refused\"") == std::string::npos);
+  CHECK(metrics.find("end=\"refused\"") == std::string::npos);
 }

@@ -3,8 +3,10 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <functional>
 #include <iomanip>
 #include <map>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <string>
@@ -13,6 +15,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "db/material_store.hpp"
 #include "db/schedule_store.hpp"
 #include "engine/random.hpp"
 #include "server/json/text.hpp"
@@ -20,6 +23,7 @@
 #include "server/service.hpp"
 #include "tests/support/temporary_folder.hpp"
 
+using namespace repose;
 using namespace repose::server;
 using namespace std::chrono;
 using namespace std::chrono_literals;
@@ -45,24 +49,35 @@ Json schedule_of(Json study) {
 /// A service whose clock stands where the test puts it.
 class Plant {
  public:
-  Plant() : service_(options()) {}
+  Plant() : service_(std::make_unique<Service>(options())) {}
 
   Json add(double restitution) {
-    const auto answer = service_.add_schedule(to_text(schedule_of(drop_study(restitution))));
+    const auto answer = service_->add_schedule(to_text(schedule_of(drop_study(restitution))));
     REQUIRE(answer);
     return Json::parse(*answer);
   }
   void measure(double restitution, double standard_error = 0.02) {
     const Json document = schedule_of(drop_study(restitution, standard_error));
-    REQUIRE(service_.replace_schedule(1, to_text(document)));
+    REQUIRE(service_->replace_schedule(1, to_text(document)));
   }
   void run(const std::stop_token& stop = {}, const CalibrationEvents& events = {}) {
-    service_.run_nights(false, stop, events);
+    service_->run_nights(false, stop, events);
   }
-  Json history() { return Json::parse(service_.nights(1, 10000, std::nullopt)->document)["items"]; }
+  Json history() {
+    return Json::parse(service_->nights(1, 10000, std::nullopt)->document)["items"];
+  }
   Json last() { return history().at(0); }
-  Json standing() { return Json::parse(*service_.schedule(1)); }
-  Service& service() { return service_; }
+  Json standing() { return Json::parse(*service_->schedule(1)); }
+  Service& service() { return *service_; }
+  /// Does that to the store while no service runs.
+  void meddle(const std::function<void(db::Store&)>& work) {
+    service_.reset();
+    {
+      db::Store store(folder_ / "a.db", db::Access::write);
+      work(store);
+    }
+    service_ = std::make_unique<Service>(options());
+  }
 
   sys_seconds now = sys_days(2026y / March / 1d) + 12h;
 
@@ -75,7 +90,7 @@ class Plant {
     return result;
   }
   TemporaryFolder folder_{TemporaryFolder::fast()};
-  Service service_;
+  std::unique_ptr<Service> service_;
 };
 
 }  // namespace
@@ -232,6 +247,35 @@ TEST_CASE("a night that comes while the last one runs is skipped, and so is one 
   CHECK(plant.history().size() == 3);
   CHECK(plant.last()["planned_at"] == "2026-03-07T01:30:00.000000Z");
   CHECK_THAT(plant.last()["result"]["reason"].get<std::string>(), Catch::Contains("too late"));
+}
+
+TEST_CASE("a schedule whose study cannot be read any more fails night after night, and says why",
+          "[server]") {
+  Plant plant;
+  Json study = drop_study(0.6);
+  const Json grain{{"title", "ours"}, {"grain", study["materials"]["grain"]}};
+  study["materials"].erase("grain");
+  study["material"] = "ours";
+  REQUIRE(plant.service().put_material("ours", to_text(grain), false));
+  REQUIRE(plant.service().add_schedule(to_text(schedule_of(study))));
+  // As long as the schedule is there, its grain is.
+  const auto refused = plant.service().remove_material("ours");
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().kind == Refusal::Kind::wrong_state);
+  CHECK_THAT(refused.error().message, Catch::Contains("schedule 1"));
+  plant.meddle([](db::Store& store) { db::MaterialStore(store).remove("ours"); });
+  CHECK(plant.standing()["next_at"] == "2026-03-02T01:30:00.000000Z");
+  for (std::size_t night = 1; night <= 2; ++night) {
+    plant.now += 24h;
+    plant.run();
+    CHECK(plant.history().size() == night);
+    CHECK(plant.last()["state"] == "failed");
+    CHECK_THAT(plant.last()["result"]["reason"].get<std::string>(),
+               Catch::Contains("cannot be read any more"));
+  }
+  REQUIRE(plant.service().remove_schedule(1));
+  REQUIRE(plant.service().put_material("ours", to_text(grain), false));
+  CHECK(plant.service().remove_material("ours"));
 }
 
 TEST_CASE("a removed schedule begins no more nights, and its history stays", "[server]") {
