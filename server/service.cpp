@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <iostream>
+#include <stdexcept>
 #include <utility>
 
 #include "db/attempt_store.hpp"
@@ -257,14 +258,16 @@ Answer<std::string> Service::promote(std::int64_t schedule, std::string_view doc
 
 void Service::run_nights(bool all, const std::stop_token& stop, const CalibrationEvents& events) {
   const Begin which = all ? Begin::all : Begin::due;
-  for (const std::int64_t id : begin_nights(state_->store, which, state_->clock())) {
+  FailureLog failures;
+  for (const std::int64_t id : begin_nights(state_->store, which, state_->clock(), failures)) {
     const auto record = state_->store.calibration(id);
     const auto calibration = parse_calibration(record->request);
     if (!calibration || !state_->store.start(id, microseconds_now())) continue;
     state_->run(id, *calibration, stop, events);
     if (stop.stop_requested()) return;
   }
-  end_nights(state_->store, state_->worker_options, stop, state_->clock());
+  end_nights(state_->store, state_->worker_options, stop, state_->clock(), failures);
+  if (!failures.empty()) throw std::runtime_error("not every night could be run: the log says why");
 }
 
 std::vector<engine::Evaluation> Service::evaluate(const engine::Trial& trial, int replicates) {

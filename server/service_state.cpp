@@ -1,7 +1,6 @@
 #include "server/service_state.hpp"
 
 #include <exception>
-#include <iostream>
 #include <system_error>
 #include <utility>
 
@@ -80,27 +79,21 @@ Service::State::State(const ServiceOptions& options)
 
 /// What the clock asks for. A night that was cut off after its calibration is ended here too.
 void Service::State::look_for_nights(const std::stop_token& stop) {
-  try {
-    for (const std::int64_t id : begin_nights(store, Begin::due, clock())) {
+  // Where the store fails (a full disk) the next look may find it well again.
+  failures.run("the look for nights", [&] {
+    for (const std::int64_t id : begin_nights(store, Begin::due, clock(), failures)) {
       scheduler->submit({Job::Kind::calibration, id});
     }
     const std::unique_lock hold(nights, std::try_to_lock);
-    if (hold.owns_lock()) end_nights(store, worker_options, stop, clock());
-  } catch (const std::exception&) {
-    // The store fails (a full disk): the next look may find it well again.
-    return;
-  }
+    if (hold.owns_lock()) end_nights(store, worker_options, stop, clock(), failures);
+  });
 }
 
 /// Takes up jobs that a failing store or host has cut off, and tells webhooks.
 void Service::State::run_errands(const std::stop_token& stop) {
-  try {
-    take_up_stranded();
-    deliver_due(store, post, microseconds_now(), stop);
-  } catch (const std::exception&) {
-    // The store fails: the next look may find it well again.
-    return;
-  }
+  failures.run("the look for jobs that wait", [this] { take_up_stranded(); });
+  failures.run("the look for webhooks",
+               [&] { deliver_due(store, post, microseconds_now(), stop, failures); });
 }
 
 void Service::State::take_up_stranded() {
@@ -260,20 +253,20 @@ void Service::State::run_diagnosis(std::int64_t id,
 }
 
 void Service::State::run_job(const Job& job, const std::stop_token& stop) {
-  try {
-    if (job.kind == Job::Kind::calibration) {
+  const bool calibrates = job.kind == Job::Kind::calibration;
+  const std::string name = (calibrates ? "calibration " : "diagnosis ") + std::to_string(job.id);
+  const bool ran = failures.run(name, [&] {
+    if (calibrates) {
       run_calibration(job.id, stop);
     } else {
       run_diagnosis(job.id, stop, {});
     }
     const std::scoped_lock hold(nights);
-    end_nights(store, worker_options, stop, clock());
-  } catch (const std::exception& problem) {
-    // The store itself fails (a full disk), or the host: the row stays as it is, and is taken up
-    // when it can be.
-    std::clog << std::string("repose: a job waits: ") + problem.what() + "\n";
-    strand(job);
-  }
+    end_nights(store, worker_options, stop, clock(), failures);
+  });
+  // The store itself fails (a full disk), or the host: the row stays as it is, and is taken up when
+  // it can be.
+  if (!ran) strand(job);
 }
 
 }  // namespace repose::server

@@ -15,6 +15,7 @@
 #include "calibrator/calibration.hpp"
 #include "calibrator/fit.hpp"
 #include "db/store.hpp"
+#include "server/jobs/failure_log.hpp"
 #include "server/jobs/scheduler.hpp"
 #include "server/jobs/watch.hpp"
 #include "server/jobs/workers.hpp"
@@ -61,6 +62,7 @@ struct Service::State {
   std::vector<std::string> webhook_hosts;
   Post post;
   Readiness readiness;
+  FailureLog failures;
   std::mutex nights;  ///< held while nights are ended
   /// Of the two sets, and held for nothing but a look or a change: a request may hold the store's
   /// when it comes here, so who holds this one must not wait for the store.

@@ -199,33 +199,40 @@ engine::Result<NightlySchedule, Problems> read_schedule(db::Store& store,
                         });
 }
 
-std::vector<std::int64_t> begin_nights(db::Store& store, Begin which, std::int64_t now) {
+std::vector<std::int64_t> begin_nights(db::Store& store,
+                                       Begin which,
+                                       std::int64_t now,
+                                       FailureLog& failures) {
   ScheduleStore schedules(store);
   std::vector<std::int64_t> calibrations;
+  const auto add = [&](const std::optional<std::int64_t>& id) {
+    if (id && !store.calibration(*id)->finished_at) calibrations.push_back(*id);
+  };
   for (const NightRecord& night : schedules.running_nights()) {
-    if (night.calibration) {
-      calibrations.push_back(*night.calibration);
-    } else if (const auto id = prepare(store, *schedules.schedule(night.schedule), night, now)) {
-      calibrations.push_back(*id);
-    }
+    failures.run("the preparation of night " + std::to_string(night.id), [&] {
+      add(night.calibration ? night.calibration
+                            : prepare(store, *schedules.schedule(night.schedule), night, now));
+    });
   }
   for (const ScheduleRecord& record : schedules.schedules()) {
-    if (const auto id = begin_night(store, record, which, now)) calibrations.push_back(*id);
+    failures.run("schedule " + std::to_string(record.id),
+                 [&] { add(begin_night(store, record, which, now)); });
   }
-  std::erase_if(calibrations,
-                [&](std::int64_t id) { return store.calibration(id)->finished_at.has_value(); });
   return calibrations;
 }
 
 void end_nights(db::Store& store,
                 const WorkerOptions& options,
                 const std::stop_token& stop,
-                std::int64_t now) {
+                std::int64_t now,
+                FailureLog& failures) {
   ScheduleStore schedules(store);
   for (const NightRecord& night : schedules.running_nights()) {
-    if (!night.calibration || !store.calibration(*night.calibration)->finished_at) continue;
-    const auto result = conclude(store, options, night, stop);
-    if (result) schedules.end_night(night.id, *result, now);
+    failures.run("the end of night " + std::to_string(night.id), [&] {
+      if (!night.calibration || !store.calibration(*night.calibration)->finished_at) return;
+      const auto result = conclude(store, options, night, stop);
+      if (result) schedules.end_night(night.id, *result, now);
+    });
   }
 }
 

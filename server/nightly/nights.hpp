@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "db/store.hpp"
+#include "server/jobs/failure_log.hpp"
 #include "server/jobs/workers.hpp"
 #include "server/json/schedule_json.hpp"
 
@@ -33,14 +34,19 @@ engine::Result<NightlySchedule, Problems> read_schedule(db::Store& store,
                                                         std::string_view document);
 
 /// Begins nights and takes up those that were cut off; the calibrations that are to be run for
-/// them. `now` is microseconds since 1970 UTC.
-std::vector<std::int64_t> begin_nights(db::Store& store, Begin which, std::int64_t now);
+/// them. A schedule that fails keeps no other one from beginning. `now` is microseconds since 1970
+/// UTC.
+std::vector<std::int64_t> begin_nights(db::Store& store,
+                                       Begin which,
+                                       std::int64_t now,
+                                       FailureLog& failures);
 
 /// Ends the nights whose calibrations have ended. Diagnoses that this starts are run here and now;
 /// a stop leaves the night to the next call.
 void end_nights(db::Store& store,
                 const WorkerOptions& options,
                 const std::stop_token& stop,
-                std::int64_t now);
+                std::int64_t now,
+                FailureLog& failures);
 
 }  // namespace repose::server

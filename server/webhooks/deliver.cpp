@@ -93,9 +93,11 @@ void deliver(db::Store& store,
 void deliver_due(db::Store& store,
                  const Post& post,
                  std::int64_t now,
-                 const std::stop_token& stop) {
+                 const std::stop_token& stop,
+                 FailureLog& failures) {
   for (const auto& webhook : db::WebhookStore(store).due(now)) {
-    deliver(store, post, webhook, now, stop);
+    failures.run("webhook " + std::to_string(webhook.id),
+                 [&] { deliver(store, post, webhook, now, stop); });
     if (stop.stop_requested()) return;
   }
 }

@@ -14,6 +14,7 @@
 #include <stop_token>
 
 #include "db/store.hpp"
+#include "server/jobs/failure_log.hpp"
 #include "server/webhooks/post.hpp"
 
 namespace repose::server {
@@ -22,7 +23,12 @@ namespace repose::server {
 /// somebody puts it in force again.
 inline constexpr std::array<std::int64_t, 6> delivery_waits{10, 60, 600, 3600, 6 * 3600, 24 * 3600};
 
-/// Everything that is due at that time (microseconds since 1970 UTC).
-void deliver_due(db::Store& store, const Post& post, std::int64_t now, const std::stop_token& stop);
+/// Everything that is due at that time (microseconds since 1970 UTC). A webhook that fails here
+/// keeps no other one waiting.
+void deliver_due(db::Store& store,
+                 const Post& post,
+                 std::int64_t now,
+                 const std::stop_token& stop,
+                 FailureLog& failures);
 
 }  // namespace repose::server

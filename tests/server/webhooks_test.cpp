@@ -15,10 +15,12 @@
 #include "server/json/webhook_json.hpp"
 #include "server/webhooks/address.hpp"
 #include "server/webhooks/deliver.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace repose;
 using namespace repose::server;
+using repose::tests::CapturedLog;
 using repose::tests::TemporaryFolder;
 
 namespace {
@@ -37,13 +39,15 @@ struct Scene {
     for (int i = 0; i < count; ++i) store.add_calibration("study", "{}", "digest", 0);
   }
   void deliver(std::int64_t now) {
-    deliver_due(store,
-                [this](const Message& message, const std::stop_token&) {
-                  got.push_back(message);
-                  return answer;
-                },
-                now,
-                {});
+    deliver_due(
+        store,
+        [this](const Message& message, const std::stop_token&) {
+          got.push_back(message);
+          return answer;
+        },
+        now,
+        {},
+        failures);
   }
   [[nodiscard]] std::vector<std::string> ids() const {
     std::vector<std::string> result;
@@ -59,6 +63,7 @@ struct Scene {
   }
 
   TemporaryFolder folder;
+  FailureLog failures;
   db::Store store;
   db::WebhookStore webhooks;
   std::string secret = "whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw";
@@ -199,7 +204,7 @@ TEST_CASE("a service that dies after an event has arrived sends it again under i
     scene.got.push_back(message);
     throw std::runtime_error("killed");
   };
-  CHECK_THROWS(deliver_due(scene.store, dying, 0, {}));
+  deliver_due(scene.store, dying, 0, {}, scene.failures);
   scene.deliver(0);
   CHECK(scene.ids() == Ids{"event_1", "event_1", "event_2"});
   CHECK(scene.got[0].body == scene.got[1].body);
@@ -210,15 +215,42 @@ TEST_CASE("one deaf receiver does not keep the others waiting", "[server]") {
   scene.add();
   scene.webhooks.add("https://deaf.example/", R"(["calibration.*"])", scene.secret, 0);
   scene.happen(2);
-  deliver_due(scene.store,
-              [&](const Message& message, const std::stop_token&) -> Posted {
-                if (message.url.find("deaf") != std::string::npos) return {.status = 500};
-                scene.got.push_back(message);
-                return {.status = 200};
-              },
-              0,
-              {});
+  deliver_due(
+      scene.store,
+      [&](const Message& message, const std::stop_token&) -> Posted {
+        if (message.url.find("deaf") != std::string::npos) return {.status = 500};
+        scene.got.push_back(message);
+        return {.status = 200};
+      },
+      0,
+      {},
+      scene.failures);
   CHECK(scene.ids() == Ids{"event_1", "event_2"});
+}
+
+TEST_CASE("a webhook that fails here is told in the log once, and keeps no other one waiting",
+          "[server]") {
+  const CapturedLog log;
+  Scene scene;
+  scene.webhooks.add("https://broken.example/", R"(["calibration.*"])", scene.secret, 0);
+  scene.add();
+  scene.happen(2);
+  for (const std::int64_t now : {0, 1}) {
+    deliver_due(
+        scene.store,
+        [&](const Message& message, const std::stop_token&) -> Posted {
+          if (message.url.find("broken") != std::string::npos) {
+            throw std::runtime_error("libcurl does not start");
+          }
+          scene.got.push_back(message);
+          return {.status = 200};
+        },
+        now,
+        {},
+        scene.failures);
+  }
+  CHECK(scene.ids() == Ids{"event_1", "event_2"});
+  CHECK(log.text() == "repose: webhook 1 failed: libcurl does not start\n");
 }
 
 TEST_CASE("a quantity that drifts is told", "[server]") {

@@ -21,12 +21,14 @@
 #include "server/json/text.hpp"
 #include "server/nightly/time_zone.hpp"
 #include "server/service.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace repose;
 using namespace repose::server;
 using namespace std::chrono;
 using namespace std::chrono_literals;
+using repose::tests::CapturedLog;
 using repose::tests::TemporaryFolder;
 
 namespace {
@@ -276,6 +278,21 @@ TEST_CASE("a schedule whose study cannot be read any more fails night after nigh
   REQUIRE(plant.service().remove_schedule(1));
   REQUIRE(plant.service().put_material("ours", to_text(grain), false));
   CHECK(plant.service().remove_material("ours"));
+}
+
+TEST_CASE("a schedule that fails is told in the log, and keeps no other one from beginning",
+          "[server]") {
+  Plant plant;
+  plant.meddle([](db::Store& store) { db::ScheduleStore(store).add("of no form", "{}", 0); });
+  const auto second = plant.service().add_schedule(to_text(schedule_of(drop_study(0.6))));
+  REQUIRE(second);
+  plant.now += 24h;
+  const CapturedLog log;
+  CHECK_THROWS_WITH(plant.run(), Catch::Contains("not every night"));
+  const Json nights = Json::parse(plant.service().nights(2, 10, std::nullopt)->document)["items"];
+  REQUIRE(nights.size() == 1);
+  CHECK(nights[0]["outcome"] == "first");
+  CHECK_THAT(log.text(), Catch::StartsWith("repose: schedule 1 failed: its times cannot be read"));
 }
 
 TEST_CASE("a removed schedule begins no more nights, and its history stays", "[server]") {
