@@ -119,9 +119,30 @@ std::optional<Reply> Api::refuse(const Route& route, Request& request) {
                            std::string(scope_names.at(static_cast<std::size_t>(needed))) + ".");
 }
 
+/// A stream ends about a second after its reader's token: one that was revoked, or has expired, is
+/// good for no event more.
+void Api::watch_reader(const Route& route, const Request& request, Reply& reply) {
+  using Clock = std::chrono::steady_clock;
+  reply.stream = [this,
+                  &route,
+                  reader = request,
+                  source = std::move(reply.stream),
+                  last = Clock::now()]() mutable -> std::optional<std::string> {
+    if (const auto now = Clock::now(); now - last >= std::chrono::seconds(1)) {
+      if (refuse(route, reader)) return std::nullopt;
+      last = now;
+    }
+    return source();
+  };
+}
+
 Reply Api::answer(const Route& route, Request& request) {
   if (auto refusal = refuse(route, request)) return std::move(*refusal);
-  if (reads(request)) return run_route(route, service_, request);
+  if (reads(request)) {
+    Reply reply = run_route(route, service_, request);
+    if (reply.stream) watch_reader(route, request, reply);
+    return reply;
+  }
   const std::scoped_lock hold(changes_);
   if (!request.field("idempotency-key").empty()) return once(route, request);
   return change(route, request);

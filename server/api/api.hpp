@@ -26,6 +26,7 @@ class Api {
 
  private:
   std::optional<Reply> refuse(const Route& route, Request& request);
+  void watch_reader(const Route& route, const Request& request, Reply& reply);
   Reply answer(const Route& route, Request& request);
   Reply once(const Route& route, const Request& request);
   Reply change(const Route& route, const Request& request);

@@ -46,8 +46,9 @@ struct Reply {
   std::string content_type = "application/json";
   std::vector<std::pair<std::string, std::string>> headers = {};
   std::string next = {};  ///< of a page of a list: where the next one begins; empty at the end
-  /// Of an answer that does not end: the text that has come up since the last call.
-  std::function<std::string()> stream = {};
+  /// Of an answer that does not end by itself: the text that has come up since the last call, or
+  /// nothing where there will be no more.
+  std::function<std::optional<std::string>()> stream = {};
 };
 
 /// A field of the query.

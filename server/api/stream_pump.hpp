@@ -15,12 +15,13 @@
 
 namespace repose::server {
 
-/// The text that has come up since the last call; empty where there is none. Called by one thread.
-using StreamSource = std::function<std::string()>;
+/// The text that has come up since the last call, empty where there is none; or nothing where there
+/// will be no more. Called by one thread.
+using StreamSource = std::function<std::optional<std::string>()>;
 
 class StreamPump {
  public:
-  /// Given the stream's number and its text, or nothing where the source has failed.
+  /// Given the stream's number and its text, or nothing where the source has ended or failed.
   using Deliver = std::function<void(std::uint64_t id, std::optional<std::string> text)>;
 
   StreamPump(std::chrono::milliseconds interval, Deliver deliver);

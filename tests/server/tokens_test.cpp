@@ -1,5 +1,6 @@
 #include "server/access/tokens.hpp"
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -9,7 +10,9 @@
 #include <catch2/catch.hpp>
 
 #include "server/access/secret.hpp"
+#include "server/api/api.hpp"
 #include "server/json/token_json.hpp"
+#include "server/service.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace repose::server;
@@ -132,4 +135,35 @@ TEST_CASE("a file of tokens that is gone lets nobody in, one that comes lets its
   const std::string other = Tokens(folder / "tokens").create("bob", Scope::read, std::nullopt, 100);
   CHECK(service.find("Bearer " + other));
   CHECK_FALSE(service.find("Bearer " + text));
+}
+
+TEST_CASE("an event stream ends soon after the token of its reader", "[server]") {
+  const TemporaryFolder folder;
+  Tokens command(folder / "tokens"), tokens(folder / "tokens");
+  ServiceOptions options;
+  options.database = folder / "a.db";
+  Service service(options);
+  Api api(service, &tokens);
+  const auto follow = [&](const std::string& token) {
+    Request request;
+    request.method = "GET";
+    request.path = "/v1/events";
+    request.fields["authorization"] = "Bearer " + token;
+    return api.respond(request);
+  };
+  const Reply open = follow("none is needed yet");
+  const std::string ada = command.create("ada", Scope::read, std::nullopt, 100);
+  const std::string bob = command.create("bob", Scope::read, std::nullopt, 100);
+  const Reply revoked = follow(ada), kept = follow(bob);
+  REQUIRE(kept.stream);
+  CHECK(revoked.stream().has_value());
+  REQUIRE(command.revoke(command.find("Bearer " + ada)->id, 200));
+  const auto ends = [](const Reply& reply) {
+    const auto patience = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (reply.stream() && std::chrono::steady_clock::now() < patience) std::this_thread::yield();
+    return !reply.stream();
+  };
+  CHECK(ends(revoked));
+  CHECK(ends(open));  // since there are tokens, everyone needs one
+  CHECK(kept.stream().has_value());
 }
