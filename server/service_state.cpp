@@ -73,8 +73,13 @@ Service::State::State(const ServiceOptions& options)
   night_watch.emplace(std::chrono::seconds(15),
                       [this](const std::stop_token& stop) { look_for_nights(stop); });
   post = post_to_public(webhook_hosts);
-  errands.emplace(std::chrono::seconds(1),
-                  [this](const std::stop_token& stop) { run_errands(stop); });
+  stranded_watch.emplace(std::chrono::seconds(1), [this](const std::stop_token&) {
+    failures.run("the look for jobs that wait", [this] { take_up_stranded(); });
+  });
+  webhook_watch.emplace(std::chrono::seconds(1), [this](const std::stop_token& stop) {
+    failures.run("the look for webhooks",
+                 [&] { deliver_due(store, post, microseconds_now, stop, failures); });
+  });
 }
 
 /// What the clock asks for. A night that was cut off after its calibration is ended here too.
@@ -89,13 +94,7 @@ void Service::State::look_for_nights(const std::stop_token& stop) {
   });
 }
 
-/// Takes up jobs that a failing store or host has cut off, and tells webhooks.
-void Service::State::run_errands(const std::stop_token& stop) {
-  failures.run("the look for jobs that wait", [this] { take_up_stranded(); });
-  failures.run("the look for webhooks",
-               [&] { deliver_due(store, post, microseconds_now(), stop, failures); });
-}
-
+/// Takes up jobs that a failing store or host has cut off.
 void Service::State::take_up_stranded() {
   std::set<Job> found;
   {

@@ -49,7 +49,6 @@ struct Service::State {
                 const calibrator::Calibration& calibration,
                 const calibrator::Fit& fit);
   void look_for_nights(const std::stop_token& stop);
-  void run_errands(const std::stop_token& stop);
   void take_up_stranded();
   /// Takes a job that a user cancels from the queue, or asks it to stop where it runs.
   Schedule::Cancelled cancel(const Job& job);
@@ -71,7 +70,8 @@ struct Service::State {
   std::set<Job> stranded;                ///< that store or host failed in the middle of
   std::unique_ptr<Scheduler> scheduler;  // its thread uses all of the above
   std::optional<Watch> night_watch;      // their threads use the scheduler too
-  std::optional<Watch> errands;
+  std::optional<Watch> stranded_watch;
+  std::optional<Watch> webhook_watch;
 };
 
 }  // namespace repose::server

@@ -1,6 +1,11 @@
 #include "server/webhooks/deliver.hpp"
 
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "db/event_store.hpp"
 #include "db/webhook_store.hpp"
@@ -44,10 +49,10 @@ bool tell(db::Store& store,
           const db::WebhookRecord& webhook,
           const db::EventRecord& event,
           std::int64_t failures,
-          std::int64_t now,
+          const Clock& clock,
           const std::stop_token& stop) {
   db::WebhookStore webhooks(store);
-  const Posted posted = post(message_for(webhook, event, now), stop);
+  const Posted posted = post(message_for(webhook, event, clock()), stop);
   if (posted.status >= 200 && posted.status < 300) {
     webhooks.delivered(webhook.id, event.id);
     return true;
@@ -59,26 +64,28 @@ bool tell(db::Store& store,
   const auto attempt = static_cast<std::size_t>(failures);
   const bool again = attempt < delivery_waits.size();
   const std::string_view state = posted.status == gone ? "disabled" : again ? "active" : "parked";
-  webhooks.failed(
-      webhook.id, state, account, again ? now + second * delivery_waits.at(attempt) : now);
+  const std::int64_t wait = again ? second * delivery_waits.at(attempt) : 0;
+  webhooks.failed(webhook.id, state, account, clock() + wait);
   return false;
 }
 
-/// The events of one webhook, up to a page: then it is the others' turn.
+/// The events of one webhook, up to a page and for some seconds: then it is the others' turn.
 void deliver(db::Store& store,
              const Post& post,
              const db::WebhookRecord& webhook,
-             std::int64_t now,
+             const Clock& clock,
              const std::stop_token& stop) {
   constexpr int page = 100;
+  constexpr std::int64_t turn = 5 * second;
+  const std::int64_t begin = clock();
   const auto kinds = parse_kinds(webhook.kinds);
   const auto events = db::EventStore(store).events(std::nullopt, webhook.last_event, page);
   std::int64_t failures = webhook.failures;
   std::int64_t last = webhook.last_event;
   for (const auto& event : events) {
-    if (stop.stop_requested()) return;
+    if (stop.stop_requested() || clock() - begin >= turn) return;
     if (!is_told(kinds, event.kind)) continue;
-    if (!tell(store, post, webhook, event, failures, now, stop)) return;
+    if (!tell(store, post, webhook, event, failures, clock, stop)) return;
     failures = 0;
     last = event.id;
   }
@@ -92,14 +99,21 @@ void deliver(db::Store& store,
 
 void deliver_due(db::Store& store,
                  const Post& post,
-                 std::int64_t now,
+                 const Clock& clock,
                  const std::stop_token& stop,
                  FailureLog& failures) {
-  for (const auto& webhook : db::WebhookStore(store).due(now)) {
-    failures.run("webhook " + std::to_string(webhook.id),
-                 [&] { deliver(store, post, webhook, now, stop); });
-    if (stop.stop_requested()) return;
-  }
+  constexpr std::size_t most_at_once = 16;
+  const auto due = db::WebhookStore(store).due(clock());
+  std::atomic<std::size_t> next = 0;
+  const auto serve = [&] {
+    for (std::size_t n = next++; n < due.size() && !stop.stop_requested(); n = next++) {
+      failures.run("webhook " + std::to_string(due[n].id),
+                   [&] { deliver(store, post, due[n], clock, stop); });
+    }
+  };
+  std::vector<std::jthread> others;
+  while (others.size() + 1 < std::min(due.size(), most_at_once)) others.emplace_back(serve);
+  serve();
 }
 
 }  // namespace repose::server

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <stop_token>
 
 #include "db/store.hpp"
@@ -23,11 +24,14 @@ namespace repose::server {
 /// somebody puts it in force again.
 inline constexpr std::array<std::int64_t, 6> delivery_waits{10, 60, 600, 3600, 6 * 3600, 24 * 3600};
 
-/// Everything that is due at that time (microseconds since 1970 UTC). A webhook that fails here
-/// keeps no other one waiting.
+/// Microseconds since 1970 UTC; asked by several threads.
+using Clock = std::function<std::int64_t()>;
+
+/// What is due, to several webhooks at once and to each for some seconds at most: none that fails
+/// here, and no receiver that is slow or deaf, keeps the others waiting.
 void deliver_due(db::Store& store,
                  const Post& post,
-                 std::int64_t now,
+                 const Clock& clock,
                  const std::stop_token& stop,
                  FailureLog& failures);
 

@@ -1,6 +1,8 @@
 // Events reach the addresses that want them: signed, in order, each until it has arrived.
 #include <arpa/inet.h>
+#include <chrono>
 #include <fstream>
+#include <future>
 #include <netinet/in.h>
 #include <set>
 #include <stdexcept>
@@ -45,7 +47,7 @@ struct Scene {
           got.push_back(message);
           return answer;
         },
-        now,
+        [now] { return now; },
         {},
         failures);
   }
@@ -204,7 +206,8 @@ TEST_CASE("a service that dies after an event has arrived sends it again under i
     scene.got.push_back(message);
     throw std::runtime_error("killed");
   };
-  deliver_due(scene.store, dying, 0, {}, scene.failures);
+  deliver_due(
+      scene.store, dying, [] { return 0; }, {}, scene.failures);
   scene.deliver(0);
   CHECK(scene.ids() == Ids{"event_1", "event_1", "event_2"});
   CHECK(scene.got[0].body == scene.got[1].body);
@@ -212,20 +215,58 @@ TEST_CASE("a service that dies after an event has arrived sends it again under i
 
 TEST_CASE("one deaf receiver does not keep the others waiting", "[server]") {
   Scene scene;
-  scene.add();
   scene.webhooks.add("https://deaf.example/", R"(["calibration.*"])", scene.secret, 0);
+  scene.add();
   scene.happen(2);
+  std::promise<void> others_told;
+  auto others = others_told.get_future();
+  bool waited_in_vain = false;
   deliver_due(
       scene.store,
       [&](const Message& message, const std::stop_token&) -> Posted {
-        if (message.url.find("deaf") != std::string::npos) return {.status = 500};
+        if (message.url.find("deaf") != std::string::npos) {
+          waited_in_vain = others.wait_for(std::chrono::minutes(1)) != std::future_status::ready;
+          return {.account = "no answer"};
+        }
         scene.got.push_back(message);
+        if (scene.got.size() == 2) others_told.set_value();
         return {.status = 200};
       },
-      0,
+      [] { return 0; },
       {},
       scene.failures);
   CHECK(scene.ids() == Ids{"event_1", "event_2"});
+  CHECK_FALSE(waited_in_vain);
+}
+
+TEST_CASE("a slow receiver has some seconds a round, and each message the time at which it is sent",
+          "[server]") {
+  Scene scene;
+  const std::int64_t id = scene.add();
+  scene.happen(4);
+  std::int64_t now = 0;
+  const auto deliver = [&](int status, std::int64_t seconds) {
+    deliver_due(
+        scene.store,
+        [&](const Message& message, const std::stop_token&) -> Posted {
+          scene.got.push_back(message);
+          now += seconds * second;
+          return {.status = status};
+        },
+        [&] { return now; },
+        {},
+        scene.failures);
+  };
+  deliver(200, 2);
+  CHECK(scene.ids() == Ids{"event_1", "event_2", "event_3"});
+  std::vector<std::string> times;
+  for (const Message& message : scene.got) {
+    times.push_back(Scene::field(message, "webhook-timestamp"));
+  }
+  CHECK(times == std::vector<std::string>{"0", "2", "4"});
+  now = 100 * second;
+  deliver(503, 9);
+  CHECK(scene.webhooks.webhook(id)->next_at == (109 + delivery_waits[0]) * second);
 }
 
 TEST_CASE("a webhook that fails here is told in the log once, and keeps no other one waiting",
@@ -245,7 +286,7 @@ TEST_CASE("a webhook that fails here is told in the log once, and keeps no other
           scene.got.push_back(message);
           return {.status = 200};
         },
-        now,
+        [now] { return now; },
         {},
         scene.failures);
   }
