@@ -38,10 +38,13 @@ std::int64_t microseconds_of(std::chrono::sys_seconds time) {
   return time.time_since_epoch().count() * second;
 }
 
-/// Seeds that no other night has used; 53 bits, so that they survive as a JSON number.
-std::uint64_t seed_of_night(const Calibration& study, std::int64_t planned_at) {
-  const auto night = static_cast<std::uint64_t>(planned_at);
-  return engine::Random(study.seed, engine::Purpose::trial, night).bits() >> 11U;
+/// Seeds that no other night of any schedule has used, so that each has a calibration of its own;
+/// 53 bits, so that they survive as a JSON number.
+std::uint64_t seed_of_night(const Calibration& study, const NightRecord& night) {
+  const auto draw = [](std::uint64_t seed, std::int64_t index) {
+    return engine::Random(seed, engine::Purpose::trial, static_cast<std::uint64_t>(index)).bits();
+  };
+  return draw(draw(study.seed, night.schedule), night.planned_at) >> 11U;
 }
 
 /// What a study asks, whatever its seed.
@@ -125,7 +128,7 @@ std::optional<std::int64_t> prepare(db::Store& store,
         now);
     return std::nullopt;
   }
-  study.seed = seed_of_night(study, night.planned_at);
+  study.seed = seed_of_night(study, night);
   const std::string request = print_calibration(study);
   const auto queued = store.unfinished(digest(request));
   const std::int64_t id =

@@ -295,6 +295,20 @@ TEST_CASE("a schedule that fails is told in the log, and keeps no other one from
   CHECK_THAT(log.text(), Catch::StartsWith("repose: schedule 1 failed: its times cannot be read"));
 }
 
+TEST_CASE("two schedules of one study and one time have nights of their own", "[server]") {
+  Plant plant;
+  plant.add(0.6);
+  plant.add(0.6);
+  plant.now += 24h;
+  plant.run();
+  for (const int schedule : {1, 2}) {
+    const auto standing = Json::parse(*plant.service().schedule(schedule));
+    CHECK(standing["last_night"]["outcome"] == "first");
+    CHECK(standing["last_night"]["calibration"] == schedule);
+    CHECK(standing["promoted"]["calibration"] == schedule);
+  }
+}
+
 TEST_CASE("a removed schedule begins no more nights, and its history stays", "[server]") {
   Plant plant;
   plant.add(0.6);
