@@ -65,6 +65,13 @@ ScheduleStanding standing(db::Store& store, const db::ScheduleRecord& record, st
   return result;
 }
 
+/// Whether the nights of both are at the same times.
+bool same_times(const db::ScheduleRecord& before, const Timetable& now) {
+  const auto timetable = parse_timetable(before.request);
+  return timetable && timetable->cron == now.cron && timetable->zone.name() == now.zone.name() &&
+         timetable->jitter == now.jitter;
+}
+
 /// Whether the calibration is one of the schedule's: a night's, or one promoted before.
 bool belongs(const ScheduleStore& schedules, std::int64_t schedule, std::int64_t calibration) {
   const auto promotions = schedules.promotions(schedule);
@@ -112,9 +119,11 @@ Answer<std::string> replace_schedule(db::Store& store,
                                      std::int64_t now) {
   const auto read_one = read(store, document);
   if (!read_one) return Unexpected{read_one.error()};
-  if (!ScheduleStore(store).replace(id, read_one->name, print_schedule(*read_one), now)) {
-    return Unexpected{not_found(id)};
-  }
+  ScheduleStore schedules(store);
+  const auto before = schedules.schedule(id);
+  if (!before || before->removed_at) return Unexpected{not_found(id)};
+  if (same_times(*before, read_one->timetable)) keep_planned_night(store, *before, now);
+  schedules.replace(id, read_one->name, print_schedule(*read_one), now);
   return schedule(store, id, now);
 }
 

@@ -23,6 +23,8 @@ struct Cron {
   std::bitset<8> weekdays;  ///< from Sunday, 0
   bool every_day = true;    ///< the day field begins with *
   bool every_weekday = true;
+
+  bool operator==(const Cron&) const = default;
 };
 
 /// The error is a sentence that names the field.

@@ -147,22 +147,44 @@ struct Beginning {
   bool too_late = false;
 };
 
-/// A night comes at its time even where its study cannot be read any more: then it says so.
-std::optional<Beginning> beginning(const ScheduleRecord& record,
-                                   std::int64_t last_planned,
-                                   Begin which,
+/// The times of a schedule, which can be read even where its study cannot any more: then the night
+/// comes, and says so.
+Timetable times_of(const ScheduleRecord& record) {
+  auto timetable = parse_timetable(record.request);
+  if (timetable) return *std::move(timetable);
+  throw std::runtime_error("its times cannot be read any more: " +
+                           timetable.error().front().message);
+}
+
+std::optional<Beginning> beginning(const ScheduleStore& schedules,
+                                   const ScheduleRecord& record,
+                                   const Timetable& timetable,
                                    std::int64_t now) {
-  if (which == Begin::all) return Beginning{now};
-  const auto timetable = parse_timetable(record.request);
-  if (!timetable) {
-    throw std::runtime_error("its times cannot be read any more: " +
-                             timetable.error().front().message);
-  }
-  const std::int64_t since =
-      std::max({record.created_at, record.replaced_at.value_or(0), last_planned});
-  const auto night = due(*timetable, record.id, instant(since), instant(now));
+  const auto last = schedules.nights(record.id, 1, std::nullopt);
+  const std::int64_t since = std::max({record.created_at,
+                                       record.replaced_at.value_or(0),
+                                       last.empty() ? 0 : last.front().planned_at});
+  const auto night = due(timetable, record.id, instant(since), instant(now));
   if (!night) return std::nullopt;
   return Beginning{microseconds_of(night->planned), night->too_late};
+}
+
+/// The row of a night that runs now; nothing where that night has been, or is skipped.
+std::optional<std::int64_t> open_night(ScheduleStore& schedules,
+                                       std::int64_t schedule,
+                                       const Beginning& night,
+                                       std::int64_t now) {
+  const auto running = schedules.running_nights();
+  const bool overlaps =
+      std::ranges::find(running, schedule, &NightRecord::schedule) != running.end();
+  const auto id = schedules.begin_night(schedule, night.planned_at, now);
+  if (!id || (!night.too_late && !overlaps)) return id;
+  end(schedules,
+      *id,
+      {.state = "skipped"},
+      overlaps ? "the night before is still running" : "it was missed, and is too late to catch up",
+      now);
+  return std::nullopt;
 }
 
 std::optional<std::int64_t> begin_night(db::Store& store,
@@ -170,27 +192,25 @@ std::optional<std::int64_t> begin_night(db::Store& store,
                                         Begin which,
                                         std::int64_t now) {
   ScheduleStore schedules(store);
-  const auto last = schedules.nights(record.id, 1, std::nullopt);
-  const auto night = beginning(record, last.empty() ? 0 : last.front().planned_at, which, now);
+  const auto night = which == Begin::all ? std::optional(Beginning{now})
+                                         : beginning(schedules, record, times_of(record), now);
   if (!night) return std::nullopt;
-  const auto running = schedules.running_nights();
-  const bool overlaps =
-      std::ranges::find(running, record.id, &NightRecord::schedule) != running.end();
-  const auto id = schedules.begin_night(record.id, night->planned_at, now);
-  if (!id) return std::nullopt;  // that night has been
-  if (night->too_late || overlaps) {
-    end(schedules,
-        *id,
-        {.state = "skipped"},
-        overlaps ? "the night before is still running"
-                 : "it was missed, and is too late to catch up",
-        now);
-    return std::nullopt;
-  }
+  const auto id = open_night(schedules, record.id, *night, now);
+  if (!id) return std::nullopt;
   return prepare(store, record, *schedules.night(*id), now);
 }
 
 }  // namespace
+
+void keep_planned_night(db::Store& store, const ScheduleRecord& record, std::int64_t now) {
+  ScheduleStore schedules(store);
+  Timetable at_once = times_of(record);
+  at_once.catch_up += at_once.jitter;
+  at_once.jitter = std::chrono::seconds(0);
+  if (const auto night = beginning(schedules, record, at_once, now)) {
+    open_night(schedules, record.id, *night, now);
+  }
+}
 
 engine::Result<NightlySchedule, Problems> read_schedule(db::Store& store,
                                                         std::string_view document) {

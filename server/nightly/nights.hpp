@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "db/schedule_store.hpp"
 #include "db/store.hpp"
 #include "server/jobs/failure_log.hpp"
 #include "server/jobs/workers.hpp"
@@ -32,6 +33,11 @@ enum class Begin : std::uint8_t {
 /// A schedule's document, with the measurements that are kept now where it names a set of them.
 engine::Result<NightlySchedule, Problems> read_schedule(db::Store& store,
                                                         std::string_view document);
+
+/// The night of a schedule that is planned and has not begun, its delay still to pass, begins: it is a
+/// row, and the next begin_nights() goes on with it. For a change of what is asked, which counts the
+/// times from then on.
+void keep_planned_night(db::Store& store, const db::ScheduleRecord& record, std::int64_t now);
 
 /// Begins nights and takes up those that were cut off; the calibrations that are to be run for
 /// them. A schedule that fails keeps no other one from beginning. `now` is microseconds since 1970

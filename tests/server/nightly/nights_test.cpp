@@ -295,6 +295,29 @@ TEST_CASE("a schedule that fails is told in the log, and keeps no other one from
   CHECK_THAT(log.text(), Catch::StartsWith("repose: schedule 1 failed: its times cannot be read"));
 }
 
+TEST_CASE("new measurements do not lose the night that waits for its delay, other times do",
+          "[server]") {
+  Plant plant;
+  Json schedule = schedule_of(drop_study(0.6));
+  schedule["jitter_minutes"] = 60;
+  REQUIRE(plant.service().add_schedule(to_text(schedule)));
+  plant.now = sys_days(2026y / March / 2d) + 1h + 30min;
+  plant.run();
+  CHECK(plant.history().empty());  // not before its delay
+  schedule["study"] = drop_study(0.7);
+  REQUIRE(plant.service().replace_schedule(1, to_text(schedule)));
+  plant.run();
+  REQUIRE(plant.history().size() == 1);
+  CHECK(plant.last()["planned_at"] == "2026-03-02T01:30:00.000000Z");
+  CHECK(plant.last()["result"]["changed"][0]["now"] == 0.7);
+  plant.now += 24h;
+  schedule["cron"] = "0 2 * * *";
+  REQUIRE(plant.service().replace_schedule(1, to_text(schedule)));
+  plant.now += 1h;
+  plant.run();
+  CHECK(plant.history().size() == 1);
+}
+
 TEST_CASE("two schedules of one study and one time have nights of their own", "[server]") {
   Plant plant;
   plant.add(0.6);
