@@ -266,7 +266,12 @@ void Service::run_nights(bool all, const std::stop_token& stop, const Calibratio
     state_->run(id, *calibration, stop, events);
     if (stop.stop_requested()) return;
   }
-  end_nights(state_->store, state_->worker_options, stop, state_->clock(), failures);
+  const auto end = [&] {
+    return end_nights(state_->store, state_->worker_options, stop, state_->clock(), failures);
+  };
+  for (auto ids = end(); !ids.empty() && !stop.stop_requested(); ids = end()) {
+    for (const std::int64_t id : ids) state_->run_diagnosis(id, stop, {});
+  }
   if (!failures.empty()) throw std::runtime_error("not every night could be run: the log says why");
 }
 

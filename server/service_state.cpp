@@ -90,8 +90,16 @@ void Service::State::look_for_nights(const std::stop_token& stop) {
       scheduler->submit({Job::Kind::calibration, id});
     }
     const std::unique_lock hold(nights, std::try_to_lock);
-    if (hold.owns_lock()) end_nights(store, worker_options, stop, clock(), failures);
+    if (hold.owns_lock()) end_nights(stop);
   });
+}
+
+/// The diagnoses that nights wait for are jobs as any other: they wait their turn, and can be
+/// cancelled.
+void Service::State::end_nights(const std::stop_token& stop) {
+  for (const std::int64_t id : server::end_nights(store, worker_options, stop, clock(), failures)) {
+    scheduler->submit({Job::Kind::diagnosis, id});
+  }
 }
 
 /// Takes up jobs that a failing store or host has cut off.
@@ -261,7 +269,7 @@ void Service::State::run_job(const Job& job, const std::stop_token& stop) {
       run_diagnosis(job.id, stop, {});
     }
     const std::scoped_lock hold(nights);
-    end_nights(store, worker_options, stop, clock(), failures);
+    end_nights(stop);
   });
   // The store itself fails (a full disk), or the host: the row stays as it is, and is taken up when
   // it can be.

@@ -49,6 +49,7 @@ struct Service::State {
                 const calibrator::Calibration& calibration,
                 const calibrator::Fit& fit);
   void look_for_nights(const std::stop_token& stop);
+  void end_nights(const std::stop_token& stop);
   void take_up_stranded();
   /// Takes a job that a user cancels from the queue, or asks it to stop where it runs.
   Schedule::Cancelled cancel(const Job& job);

@@ -10,6 +10,7 @@
 #include "calibrator/misfit.hpp"
 #include "server/json/calibration_json.hpp"
 #include "server/json/fit_json.hpp"
+#include "server/json/missing_effect_request.hpp"
 #include "server/json/schedule_json.hpp"
 #include "server/missing_effect.hpp"
 #include "server/nightly/continuation.hpp"
@@ -164,7 +165,8 @@ std::optional<Calibration> last_study(const db::Store& store,
 /// What the night was judged by, from the store; or why there is nothing to judge.
 Answer<Evidence> evidence(db::Store& store,
                           const WorkerOptions& options,
-                          const NightRecord& night) {
+                          const NightRecord& night,
+                          const std::stop_token& stop) {
   const auto record = store.calibration(*night.calibration);
   if (record->state != "done") {
     return engine::Unexpected{Refusal{Refusal::Kind::wrong_state,
@@ -184,7 +186,7 @@ Answer<Evidence> evidence(db::Store& store,
   Workers workers(store, options);
   result.check = recheck_published(
       store, result.study, *continuation, [&](std::span<const engine::Trial> trials) {
-        return workers.run(trials, {}, {});
+        return workers.run(trials, stop, {});
       });
   return result;
 }
@@ -195,18 +197,30 @@ std::string outcome_of(const Evidence& night) {
   return night.incumbent ? "moved" : "first";
 }
 
+/// The diagnosis of a night's calibration, queued where there is none yet.
+Answer<std::int64_t> diagnosis_of(db::Store& store, std::int64_t calibration) {
+  const std::string request = print_diagnosis_request({});
+  for (const db::DiagnosisRecord& record : store.diagnoses(calibration)) {
+    if (record.request == request) return record.id;
+  }
+  return queue_diagnosis(store, calibration, {});
+}
+
 }  // namespace
 
-std::optional<NightEnd> conclude(db::Store& store,
-                                 const WorkerOptions& options,
-                                 const NightRecord& night,
-                                 const std::stop_token& stop) {
+Conclusion conclude(db::Store& store,
+                    const WorkerOptions& options,
+                    const NightRecord& night,
+                    const std::stop_token& stop) {
+  const auto begun = store.unfinished_diagnosis(*night.calibration, print_diagnosis_request({}));
+  if (begun) return {.diagnosis = begun->id};
   NightReport report;
-  const auto found = evidence(store, options, night);
+  const auto found = evidence(store, options, night, stop);
   if (!found) {
     report.reason = found.error().message;
-    return NightEnd{.state = "failed", .result = print_night_report({}, report)};
+    return {.end = NightEnd{.state = "failed", .result = print_night_report({}, report)}};
   }
+  if (stop.stop_requested()) return {};
   constexpr int looked_back = 400;
   const auto nights = db::ScheduleStore(store).nights(night.schedule, looked_back, std::nullopt);
   NightEnd end{.state = "done", .outcome = outcome_of(*found)};
@@ -225,17 +239,17 @@ std::optional<NightEnd> conclude(db::Store& store,
     if (promotion.promoted) end.promotion = promotion.reason;
   }
   if (end.outcome == "model_no_longer_adequate") {
-    const auto diagnosis = queue_diagnosis(store, *night.calibration, {});
+    const auto diagnosis = diagnosis_of(store, *night.calibration);
     if (!diagnosis) {
       report.reason += "; no diagnosis: " + diagnosis.error().message;
+    } else if (!store.diagnosis(*diagnosis)->finished_at) {
+      return {.diagnosis = *diagnosis};
     } else {
       end.diagnosis = *diagnosis;
-      const bool ours = store.start_diagnosis(*diagnosis);  // else it runs already
-      if (ours && !run_diagnosis(store, options, *diagnosis, stop, {})) return std::nullopt;
     }
   }
   end.result = print_night_report(found->study, report);
-  return end;
+  return {.end = std::move(end)};
 }
 
 }  // namespace repose::server

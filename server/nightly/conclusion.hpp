@@ -1,6 +1,7 @@
 /// Conclusion: what a night has come to, once its calibration has ended.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <stop_token>
 
@@ -9,11 +10,17 @@
 
 namespace repose::server {
 
-/// Outcome, promotion, drift, and a diagnosis where no fit is left. Simulates nothing but that:
-/// what the night has run is in the store. Nothing where a stop cut the diagnosis off.
-std::optional<db::NightEnd> conclude(db::Store& store,
-                                     const WorkerOptions& options,
-                                     const db::NightRecord& night,
-                                     const std::stop_token& stop);
+/// A night's end, or what it waits for; neither where a stop cut the look off.
+struct Conclusion {
+  std::optional<db::NightEnd> end = {};
+  std::optional<std::int64_t> diagnosis = {};  ///< that is queued or runs
+};
+
+/// Outcome, promotion, drift, and a diagnosis where no fit is left: it is queued, and the night ends
+/// when it has ended. Simulates nothing: what the night has run is in the store.
+Conclusion conclude(db::Store& store,
+                    const WorkerOptions& options,
+                    const db::NightRecord& night,
+                    const std::stop_token& stop);
 
 }  // namespace repose::server

@@ -244,19 +244,22 @@ std::vector<std::int64_t> begin_nights(db::Store& store,
   return calibrations;
 }
 
-void end_nights(db::Store& store,
-                const WorkerOptions& options,
-                const std::stop_token& stop,
-                std::int64_t now,
-                FailureLog& failures) {
+std::vector<std::int64_t> end_nights(db::Store& store,
+                                     const WorkerOptions& options,
+                                     const std::stop_token& stop,
+                                     std::int64_t now,
+                                     FailureLog& failures) {
   ScheduleStore schedules(store);
+  std::vector<std::int64_t> diagnoses;
   for (const NightRecord& night : schedules.running_nights()) {
     failures.run("the end of night " + std::to_string(night.id), [&] {
       if (!night.calibration || !store.calibration(*night.calibration)->finished_at) return;
-      const auto result = conclude(store, options, night, stop);
-      if (result) schedules.end_night(night.id, *result, now);
+      const Conclusion conclusion = conclude(store, options, night, stop);
+      if (conclusion.end) schedules.end_night(night.id, *conclusion.end, now);
+      if (conclusion.diagnosis) diagnoses.push_back(*conclusion.diagnosis);
     });
   }
+  return diagnoses;
 }
 
 }  // namespace repose::server

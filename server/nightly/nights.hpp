@@ -47,12 +47,12 @@ std::vector<std::int64_t> begin_nights(db::Store& store,
                                        std::int64_t now,
                                        FailureLog& failures);
 
-/// Ends the nights whose calibrations have ended. Diagnoses that this starts are run here and now;
-/// a stop leaves the night to the next call.
-void end_nights(db::Store& store,
-                const WorkerOptions& options,
-                const std::stop_token& stop,
-                std::int64_t now,
-                FailureLog& failures);
+/// Ends the nights whose calibrations have ended, and their diagnoses where they need one; the
+/// diagnoses that are still to be run. A night that fails keeps no other one from its end.
+std::vector<std::int64_t> end_nights(db::Store& store,
+                                     const WorkerOptions& options,
+                                     const std::stop_token& stop,
+                                     std::int64_t now,
+                                     FailureLog& failures);
 
 }  // namespace repose::server

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "server/nightly/time_zone.hpp"
 #include "server/service.hpp"
 #include "tests/support/captured_log.hpp"
+#include "tests/support/hidden_drop.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace repose;
@@ -29,6 +31,7 @@ using namespace repose::server;
 using namespace std::chrono;
 using namespace std::chrono_literals;
 using repose::tests::CapturedLog;
+using repose::tests::hidden_drop_study;
 using repose::tests::TemporaryFolder;
 
 namespace {
@@ -80,6 +83,15 @@ class Plant {
     }
     service_ = std::make_unique<Service>(options());
   }
+  /// From now on a service that looks at the clock and runs jobs by itself; the clock stands still.
+  void work_in_background() {
+    service_.reset();
+    ServiceOptions working = options();
+    working.run_jobs = true;
+    service_ = std::make_unique<Service>(working);
+  }
+  /// Evaluations that were answered, in all.
+  std::int64_t answers() { return service_->figures().attempts["answered"]; }
 
   sys_seconds now = sys_days(2026y / March / 1d) + 12h;
 
@@ -316,6 +328,31 @@ TEST_CASE("new measurements do not lose the night that waits for its delay, othe
   plant.now += 1h;
   plant.run();
   CHECK(plant.history().size() == 1);
+}
+
+TEST_CASE("a night whose model is no longer adequate ends with its diagnosis", "[server]") {
+  constexpr double hidden = 6e-5;  // s; velocity_restitution.relaxation
+  const Json schedule = schedule_of(Json::parse(hidden_drop_study(hidden)));
+  Plant whole;
+  REQUIRE(whole.service().add_schedule(to_text(schedule)));
+  whole.now += 24h;
+  whole.run();
+  CHECK(whole.last()["outcome"] == "model_no_longer_adequate");
+  REQUIRE(whole.last()["diagnosis"] == 1);
+  CHECK(Json::parse(*whole.service().diagnosis(1))["state"] == "done");
+
+  // One that is cancelled runs nothing more, and the night ends all the same.
+  Plant cut;
+  REQUIRE(cut.service().add_schedule(to_text(schedule)));
+  cut.now += 24h;
+  cut.work_in_background();
+  while (!cut.service().diagnosis(1)) std::this_thread::yield();
+  REQUIRE(cut.service().cancel_diagnosis(1));
+  while (cut.last()["state"] == "running") std::this_thread::yield();
+  CHECK(cut.last()["outcome"] == "model_no_longer_adequate");
+  CHECK(cut.last()["diagnosis"] == 1);
+  CHECK(Json::parse(*cut.service().diagnosis(1))["state"] == "cancelled");
+  CHECK(cut.answers() < whole.answers());
 }
 
 TEST_CASE("two schedules of one study and one time have nights of their own", "[server]") {
