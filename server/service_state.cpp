@@ -205,6 +205,13 @@ void Service::State::run(std::int64_t id,
     if (pace.due()) store.set_progress(id, print_progress(calibration, progress));
     if (events.progress) events.progress(progress);
   };
+  const auto leave = [&] {
+    if (take_cancel({Job::Kind::calibration, id})) {
+      store.finish(id, "cancelled", {}, {}, {}, microseconds_now());
+    } else {
+      store.requeue(id);  // the process ends, or the host fails, not the question
+    }
+  };
   try {
     if (refuse_unfelt(id, calibration, workers, stop)) return;
     const Fit fit = calibrate_from_store(
@@ -218,19 +225,14 @@ void Service::State::run(std::int64_t id,
   } catch (const db::Error&) {
     throw;  // the store fails, not the calibration
   } catch (const HostFailure&) {
-    store.requeue(id);
+    leave();
     throw;
   } catch (const std::exception& problem) {
     take_cancel({Job::Kind::calibration, id});
     store.finish(id, "failed", {}, {}, problem.what(), microseconds_now());
     return;
   }
-  if (!interrupted) return;
-  if (take_cancel({Job::Kind::calibration, id})) {
-    store.finish(id, "cancelled", {}, {}, {}, microseconds_now());
-  } else {
-    store.requeue(id);  // the process ends, not the question
-  }
+  if (interrupted) leave();
 }
 
 void Service::State::run_calibration(std::int64_t id, const std::stop_token& stop) {
