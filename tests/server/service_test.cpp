@@ -1,6 +1,7 @@
 #include "server/service.hpp"
 
 #include <condition_variable>
+#include <filesystem>
 #include <fstream>
 #include <future>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "db/store.hpp"
 #include "server/json/report_json.hpp"
 #include "server/json/text.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace repose;
@@ -221,4 +223,28 @@ TEST_CASE("a change that is done once does not lock out the look whether the ser
     REQUIRE(end.wait_for(std::chrono::minutes(1)) == std::future_status::ready);
     CHECK(end.get());
   }
+}
+
+// Eleven seconds: the host is given time to recover.
+TEST_CASE("a calibration at which the host fails waits, and goes on where the host is well again",
+          "[server][slow]") {
+  const TemporaryFolder folder;
+  const auto program = folder / "program";
+  std::ofstream(program) << "#!/bin/sh\n'" << repose::tests::repose_program
+                         << R"(' answer | sed 's/"engine_version":"/&other-/')"
+                         << "\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  {
+    ServiceOptions failing = in(folder);
+    failing.program = program;
+    Service service(failing);
+    CHECK_THROWS_WITH(service.calibrate(drop_study(), {}, {}), Catch::Contains("another engine"));
+    CHECK(read(service.calibration(1)).state == "queued");
+  }
+  Service service(in(folder));
+  int run = 0, stored = 0;
+  const auto document = calibrate(service, run, stored);
+  CHECK(document.id == 1);
+  CHECK(document.state == "done");
+  CHECK(stored == 0);
 }
