@@ -1,11 +1,13 @@
 #include "db/backup.hpp"
 
+#include <algorithm>
 #include <array>
 #include <system_error>
 #include <utility>
 
 #include "db/lock.hpp"
 #include "db/migrate.hpp"
+#include "db/move.hpp"
 #include "db/sqlite.hpp"
 #include "db/store.hpp"
 
@@ -62,16 +64,6 @@ std::vector<std::string> damage(Connection& connection) {
   return problems;
 }
 
-[[noreturn]] void fail(const std::string& doing, const std::error_code& problem) {
-  throw Error(0, doing + ": " + problem.message());
-}
-
-void move_to(const fs::path& from, const fs::path& to) {
-  std::error_code problem;
-  fs::rename(from, to, problem);
-  if (problem) fail("cannot give " + from.string() + " the name " + to.string(), problem);
-}
-
 /// A whole copy in one file, without a log beside it, that has been checked.
 void copy_checked(const fs::path& from, const fs::path& to) {
   fs::remove(to);  // left by a copy that was cut off
@@ -94,12 +86,34 @@ void copy_checked(const fs::path& from, const fs::path& to) {
 
 fs::path beside(fs::path file, const char* suffix) { return file += suffix; }
 
+/// What belongs to a database: SQLite finds the other files by the name of the first. The first one
+/// moves first, for without it nobody opens the others.
+constexpr std::array<const char*, 3> suffixes{"", "-wal", "-shm"};
+
+bool any_there(const fs::path& database) {
+  return std::any_of(suffixes.begin(), suffixes.end(), [&](const char* suffix) {
+    return fs::exists(beside(database, suffix));
+  });
+}
+
 /// Where a database that is replaced is kept: the first name that is free.
 fs::path kept_name(const fs::path& database) {
   for (int number = 1;; ++number) {
     fs::path name = beside(database, (".replaced-" + std::to_string(number)).c_str());
-    if (!fs::exists(name)) return name;
+    if (!any_there(name)) return name;
   }
+}
+
+/// Moves a database away as it is, without opening it: it may be damaged, and its log holds what
+/// was not yet moved into it. A log that stayed would be taken for the next database's.
+fs::path set_aside(const fs::path& database) {
+  if (!any_there(database)) return {};
+  fs::path kept = kept_name(database);
+  for (const char* suffix : suffixes) {
+    const fs::path file = beside(database, suffix);
+    if (fs::exists(file)) move_to(file, beside(kept, suffix));
+  }
+  return kept;
 }
 
 }  // namespace
@@ -114,20 +128,17 @@ void back_up(const fs::path& database, const fs::path& file) {
 fs::path restore(const fs::path& file, const fs::path& database) {
   if (!fs::exists(file)) throw Error(0, "there is no backup " + file.string());
   const FileLock lock(database);
-  copy_checked(file, beside(database, ".part"));
-  fs::path kept;
-  if (fs::exists(database)) {
-    {
-      Connection old(database, Connection::Mode::write);
-      old.run("PRAGMA wal_checkpoint(TRUNCATE)");
-    }
-    kept = kept_name(database);
-    move_to(database, kept);
-    fs::remove(beside(database, "-wal"));
-    fs::remove(beside(database, "-shm"));
+  const fs::path copy = beside(database, ".part");
+  copy_checked(file, copy);
+  try {
+    fs::path kept = set_aside(database);
+    move_to(copy, database);
+    return kept;
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(copy, ignored);
+    throw;
   }
-  move_to(beside(database, ".part"), database);
-  return kept;
 }
 
 std::vector<std::string> examine(const fs::path& database, const Digest& digest) {

@@ -14,8 +14,8 @@ namespace repose::db {
 /// db::Error; a file that is there already is one.
 void back_up(const std::filesystem::path& database, const std::filesystem::path& file);
 
-/// Puts a backup in the place of a database that nobody uses. What stood there is kept beside it;
-/// its path is returned, empty where there was none.
+/// Puts a backup in the place of a database that nobody uses. What stood there, damaged or not, is
+/// kept beside it; its path is returned, empty where there was none.
 std::filesystem::path restore(const std::filesystem::path& file,
                               const std::filesystem::path& database);
 

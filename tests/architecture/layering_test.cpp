@@ -81,10 +81,10 @@ const std::vector<Library> libraries{
     {"date/", {"server/nightly/time_zone.cpp"}},
     {"CLI/", {"server/cli"}},
     {"catch2/", {"tests/"}},
-    // The operating system's own: a file's lock, child processes, terminals.
-    {"fcntl.h", {"db/lock.cpp", "server/", "tests/"}},
+    // The operating system's own: a file's lock and name, child processes, terminals.
+    {"fcntl.h", {"db/lock.cpp", "db/move.cpp", "server/", "tests/"}},
     {"sys/", {"db/lock.cpp", "server/", "tests/"}},
-    {"unistd.h", {"db/lock.cpp", "server/", "tests/"}},
+    {"unistd.h", {"db/lock.cpp", "db/move.cpp", "server/", "tests/"}},
 };
 
 struct Include {

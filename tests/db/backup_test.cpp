@@ -3,6 +3,7 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 #include <catch2/catch.hpp>
@@ -40,6 +41,17 @@ std::string all_rows(const std::filesystem::path& database) {
     while (row.step()) text += table.text(0) + ": " + row.text(0) + "\n";
   }
   return text;
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  return bytes.str();
+}
+
+void write(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
 }
 
 }  // namespace
@@ -97,6 +109,67 @@ TEST_CASE("a backup taken under load is whole: all of each transaction or nothin
     CHECK(restored.used(id, 1'000'000, std::nullopt).size() % 2 == 0);
     CHECK(restored.used(id, 1'000'000, std::nullopt).size() >= 10);
   }
+}
+
+TEST_CASE("a backup is restored over whatever stands there, and that is kept as it was", "[db]") {
+  const TemporaryFolder folder;
+  const auto database = folder / "a.db";
+  std::string log;
+  {
+    Store store(database, Access::write);
+    for (int i = 0; i < 50; ++i) store.add_evaluation(evaluation(i));
+    back_up(database, folder / "copy");
+    log = bytes_of(folder / "a.db-wal");
+  }
+  const std::string rows = all_rows(folder / "copy");
+  const std::string sound = bytes_of(database);
+  REQUIRE(sound.size() > 20 * 4096);
+  REQUIRE(!log.empty());
+  const std::string zeros = sound.substr(0, 4096) + std::string(sound.size() - 4096, '\0');
+  const std::string cut = sound.substr(0, sound.size() / 2);
+  const std::string text(sound.size(), 'x');
+  int number = 0;
+  for (const std::string& there : {zeros, cut, text, std::string()}) {
+    INFO("damaged file " << ++number);
+    write(database, there);
+    write(folder / "a.db-wal", log);
+    const auto kept = restore(folder / "copy", database);
+    CHECK(kept == folder / ("a.db.replaced-" + std::to_string(number)));
+    CHECK((bytes_of(kept) == there));  // too long to be printed
+    CHECK((bytes_of(kept.string() + "-wal") == log));
+    CHECK_FALSE(std::filesystem::exists(folder / "a.db-wal"));
+    CHECK_FALSE(std::filesystem::exists(folder / "a.db.part"));
+    CHECK(all_rows(database) == rows);
+    CHECK(examine(database).empty());
+  }
+}
+
+TEST_CASE("the log of a database that is gone is not taken for that of a backup", "[db]") {
+  const TemporaryFolder folder;
+  const auto database = folder / "a.db";
+  std::string log;
+  {
+    Store store(database, Access::write);
+    back_up(database, folder / "copy");
+    for (int i = 0; i < 50; ++i) store.add_evaluation(evaluation(i));
+    log = bytes_of(folder / "a.db-wal");
+  }
+  std::filesystem::remove(database);
+  write(folder / "a.db-wal", log);
+  restore(folder / "copy", database);
+  CHECK(all_rows(database) == all_rows(folder / "copy"));
+}
+
+TEST_CASE("a backup that cannot be put in its place leaves nothing behind", "[db]") {
+  const TemporaryFolder folder;
+  { const Store store(folder / "a.db", Access::write); }
+  back_up(folder / "a.db", folder / "copy");
+  // A name so long that there may be one with .part-journal, but none with .replaced-1-wal.
+  const auto database = folder / std::string(242, 'n');
+  write(database, "old");
+  CHECK_THROWS_WITH(restore(folder / "copy", database), Catch::Contains(".replaced-1-wal"));
+  CHECK(bytes_of(database) == "old");
+  CHECK_FALSE(std::filesystem::exists(database.string() + ".part"));
 }
 
 TEST_CASE("a backup does not replace a file, and a database in use is not replaced", "[db]") {
