@@ -96,10 +96,10 @@ bool any_there(const fs::path& database) {
   });
 }
 
-/// Where a database that is replaced is kept: the first name that is free.
-fs::path kept_name(const fs::path& database) {
+/// Where something is kept beside a database: the first name that is free.
+fs::path kept_name(const fs::path& database, const std::string& suffix) {
   for (int number = 1;; ++number) {
-    fs::path name = beside(database, (".replaced-" + std::to_string(number)).c_str());
+    fs::path name = beside(database, (suffix + std::to_string(number)).c_str());
     if (!any_there(name)) return name;
   }
 }
@@ -108,7 +108,7 @@ fs::path kept_name(const fs::path& database) {
 /// was not yet moved into it. A log that stayed would be taken for the next database's.
 fs::path set_aside(const fs::path& database) {
   if (!any_there(database)) return {};
-  fs::path kept = kept_name(database);
+  fs::path kept = kept_name(database, ".replaced-");
   for (const char* suffix : suffixes) {
     const fs::path file = beside(database, suffix);
     if (fs::exists(file)) move_to(file, beside(kept, suffix));
@@ -123,6 +123,12 @@ void back_up(const fs::path& database, const fs::path& file) {
   if (fs::exists(file)) throw Error(0, file.string() + " is there already: choose another name");
   copy_checked(database, beside(file, ".part"));
   move_to(beside(file, ".part"), file);
+}
+
+fs::path keep_copy(const fs::path& database) {
+  fs::path copy = kept_name(database, ".before-");
+  back_up(database, copy);
+  return copy;
 }
 
 fs::path restore(const fs::path& file, const fs::path& database) {

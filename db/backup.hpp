@@ -14,6 +14,9 @@ namespace repose::db {
 /// db::Error; a file that is there already is one.
 void back_up(const std::filesystem::path& database, const std::filesystem::path& file);
 
+/// A backup beside the database, under a name that is free: its path.
+std::filesystem::path keep_copy(const std::filesystem::path& database);
+
 /// Puts a backup in the place of a database that nobody uses. What stood there, damaged or not, is
 /// kept beside it; its path is returned, empty where there was none.
 std::filesystem::path restore(const std::filesystem::path& file,

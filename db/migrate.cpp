@@ -58,10 +58,14 @@ void check_current(Connection& connection) {
   }
 }
 
-void migrate(Connection& connection) {
+bool is_older(Connection& connection) {
+  const std::int64_t version = pragma(connection, "user_version");
+  return version > 0 && version < newest_schema();
+}
+
+void migrate(Connection& connection, std::int64_t up_to) {
   check_schema(connection);
-  for (std::int64_t version = pragma(connection, "user_version"); version < newest_schema();
-       ++version) {
+  for (std::int64_t version = pragma(connection, "user_version"); version < up_to; ++version) {
     Transaction transaction(connection);
     connection.run(std::string(embedded_migrations[static_cast<std::size_t>(version)].second));
     connection.run("PRAGMA application_id = " + std::to_string(application_id));

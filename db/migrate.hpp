@@ -17,7 +17,10 @@ void check_schema(Connection& connection);
 /// Refuses also one that this program would have to migrate first.
 void check_current(Connection& connection);
 
+/// Whether it holds something that migrate() would change.
+bool is_older(Connection& connection);
+
 /// Applies the missing steps in order, each in one transaction.
-void migrate(Connection& connection);
+void migrate(Connection& connection, std::int64_t up_to = newest_schema());
 
 }  // namespace repose::db

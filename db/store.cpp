@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "db/backup.hpp"
 #include "db/migrate.hpp"
 #include "db/store_state.hpp"
 
@@ -61,6 +62,7 @@ void set_up(Connection& connection, Access access) {
   connection.run("PRAGMA journal_mode = WAL");
   connection.run("PRAGMA synchronous = FULL");
   quick_check(connection);
+  if (is_older(connection)) keep_copy(connection.file());  // the older program reads that one
   migrate(connection);
 }
 

@@ -10,9 +10,11 @@
 
 #include "db/sqlite.hpp"
 #include "db/store.hpp"
+#include "tests/support/database_rows.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace repose::db;
+using repose::tests::all_rows;
 using repose::tests::TemporaryFolder;
 
 namespace {
@@ -20,27 +22,6 @@ namespace {
 EvaluationRecord evaluation(int number) {
   const std::string name = std::to_string(number);
   return {"key " + name, "question " + name, std::string(2000, 'x'), 1.5, "v1", 42};
-}
-
-/// Every row of every table, in order.
-std::string all_rows(const std::filesystem::path& database) {
-  Connection connection(database, Connection::Mode::read);
-  std::string text;
-  Statement table = connection.prepare(
-      "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite_%' "
-      "ORDER BY name");
-  while (table.step()) {
-    std::string columns;
-    for (Statement one =
-             connection.prepare("SELECT name FROM pragma_table_info('" + table.text(0) + "')");
-         one.step();) {
-      columns += (columns.empty() ? "quote(" : "||','||quote(") + one.text(0) + ")";
-    }
-    Statement row =
-        connection.prepare("SELECT " + columns + " FROM " + table.text(0) + " ORDER BY 1");
-    while (row.step()) text += table.text(0) + ": " + row.text(0) + "\n";
-  }
-  return text;
 }
 
 std::string bytes_of(const std::filesystem::path& path) {
