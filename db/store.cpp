@@ -78,12 +78,18 @@ EvaluationRecord evaluation_of(const Statement& row, int first) {
 }
 
 void note_keys(Connection& connection,
-               const char* insertion,
+               const std::string& table,
                std::int64_t owner,
                std::int64_t first_ordinal,
                const std::vector<std::string>& keys) {
+  const std::string used = table + "_evaluation", id = table + "_id";
   Transaction transaction(connection);
-  Statement insert = connection.prepare(insertion);
+  connection.prepare("DELETE FROM " + used + " WHERE " + id + " = ? AND ordinal >= ?")
+      .bind(owner)
+      .bind(first_ordinal)
+      .run();
+  Statement insert =
+      connection.prepare("INSERT INTO " + used + " (" + id + ", ordinal, key) VALUES (?, ?, ?)");
   std::int64_t ordinal = first_ordinal;
   for (const std::string& key : keys) {
     insert.bind(owner).bind(ordinal++).bind(std::string_view(key)).run();
@@ -302,12 +308,7 @@ void Store::note_used(std::int64_t calibration,
                       std::int64_t first_ordinal,
                       const std::vector<std::string>& keys) {
   const std::scoped_lock hold(state_->mutex);
-  note_keys(state_->connection,
-            "INSERT INTO calibration_evaluation (calibration_id, ordinal, key) VALUES (?, ?, ?) "
-            "ON CONFLICT DO NOTHING",
-            calibration,
-            first_ordinal,
-            keys);
+  note_keys(state_->connection, "calibration", calibration, first_ordinal, keys);
 }
 
 std::vector<UsedEvaluation> Store::used(std::int64_t calibration,

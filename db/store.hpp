@@ -109,7 +109,7 @@ class Store {
   /// All of an engine that were kept before a time, in the order of keeping.
   [[nodiscard]] std::vector<EvaluationRecord> evaluations_before(const std::string& engine_version,
                                                                  std::int64_t time) const;
-  /// Notes which evaluations a calibration used, in order; what is noted already stays.
+  /// Notes which evaluations a calibration used, in order, in place of any noted from there on.
   void note_used(std::int64_t calibration,
                  std::int64_t first_ordinal,
                  const std::vector<std::string>& keys);

@@ -130,12 +130,7 @@ void Store::note_used_by_diagnosis(std::int64_t diagnosis,
                                    std::int64_t first_ordinal,
                                    const std::vector<std::string>& keys) {
   const std::scoped_lock hold(state_->mutex);
-  note_keys(state_->connection,
-            "INSERT INTO diagnosis_evaluation (diagnosis_id, ordinal, key) VALUES (?, ?, ?) "
-            "ON CONFLICT DO NOTHING",
-            diagnosis,
-            first_ordinal,
-            keys);
+  note_keys(state_->connection, "diagnosis", diagnosis, first_ordinal, keys);
 }
 
 std::vector<UsedEvaluation> Store::used_by_diagnosis(std::int64_t diagnosis) const {

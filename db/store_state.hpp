@@ -26,9 +26,10 @@ struct Store::State {
 /// The six columns of an evaluation from that one on.
 EvaluationRecord evaluation_of(const Statement& row, int first);
 
-/// Inserts (owner, ordinal, key) for each key, all or none.
+/// Notes which evaluations a row of that table used, all or none. What is noted from that ordinal on
+/// goes: a run that was cut off is run again from its beginning, perhaps by another engine.
 void note_keys(Connection& connection,
-               const char* insertion,
+               const std::string& table,
                std::int64_t owner,
                std::int64_t first_ordinal,
                const std::vector<std::string>& keys);

@@ -131,6 +131,31 @@ TEST_CASE("a calibration's evaluations come in the order of work", "[db]") {
   CHECK(store.used(id, 10, 1).size() == 1);
 }
 
+TEST_CASE("what a run that was cut off had used is not listed beside what the next one uses",
+          "[db]") {
+  const TemporaryFolder folder;
+  Store store(folder / "a.db", Access::write);
+  const auto id = store.add_calibration("n", "{}", "d", 1);
+  const auto diagnosis = store.add_diagnosis(id, "{}", 1);
+  const std::vector<std::string> former{"a", "b", "c", "d"};
+  for (const std::string& key : former) store.add_evaluation(evaluation(key));
+  for (const char* key : {"A", "B", "C"}) store.add_evaluation(evaluation(key));
+  const auto keys = [](const std::vector<UsedEvaluation>& used) {
+    std::vector<std::string> result;
+    for (const auto& one : used) result.push_back(one.evaluation.key);
+    return result;
+  };
+  store.note_used(id, 0, former);
+  store.note_used_by_diagnosis(diagnosis, 0, former);
+  // By another engine, whose search is a shorter one.
+  store.note_used(id, 0, {"A", "B"});
+  store.note_used_by_diagnosis(diagnosis, 0, {"A", "B"});
+  CHECK(keys(store.used(id, 10, std::nullopt)) == std::vector<std::string>{"A", "B"});
+  CHECK(keys(store.used_by_diagnosis(diagnosis)) == std::vector<std::string>{"A", "B"});
+  store.note_used(id, 2, {"C"});
+  CHECK(keys(store.used(id, 10, std::nullopt)) == std::vector<std::string>{"A", "B", "C"});
+}
+
 TEST_CASE("a use of an evaluation that is not there is refused whole", "[db]") {
   const TemporaryFolder folder;
   Store store(folder / "a.db", Access::write);
