@@ -33,7 +33,7 @@ bool WebhookStore::replace(std::int64_t id,
   connection
       .prepare(
           "UPDATE webhook SET url = ?, kinds = ?, state = 'active', failures = 0, next_at = ?, "
-          "account = NULL WHERE id = ?")
+          "account = NULL, revision = revision + 1 WHERE id = ?")
       .bind(std::string_view(url))
       .bind(std::string_view(kinds))
       .bind(now)
@@ -64,7 +64,7 @@ std::vector<WebhookRecord> WebhookStore::select(std::string_view rest,
   const std::scoped_lock hold(store_.state_->mutex);
   Statement row = store_.state_->connection.prepare(
       "SELECT id, created_at, url, kinds, secret, former_secret, former_until, state, last_event, "
-      "failures, next_at, delivered, failed, account FROM webhook " +
+      "failures, next_at, delivered, failed, account, revision FROM webhook " +
       std::string(rest) + " ORDER BY id");
   if (value) row.bind(*value);
   std::vector<WebhookRecord> records;
@@ -82,7 +82,8 @@ std::vector<WebhookRecord> WebhookStore::select(std::string_view rest,
                        row.integer(10),
                        row.integer(11),
                        row.integer(12),
-                       row.text_or_null(13)});
+                       row.text_or_null(13),
+                       row.integer(14)});
   }
   return records;
 }
@@ -99,40 +100,50 @@ std::vector<WebhookRecord> WebhookStore::due(std::int64_t now) const {
   return select("WHERE state = 'active' AND next_at <= ?", now);
 }
 
-void WebhookStore::delivered(std::int64_t id, std::int64_t event) {
+bool WebhookStore::delivered(const WebhookRecord& webhook, std::int64_t event) {
   const std::scoped_lock hold(store_.state_->mutex);
-  store_.state_->connection
+  Connection& connection = store_.state_->connection;
+  connection
       .prepare(
           "UPDATE webhook SET last_event = ?1, delivered = delivered + 1, failures = 0, "
-          "account = NULL WHERE id = ?2 AND last_event < ?1")
+          "account = NULL WHERE id = ?2 AND revision = ?3 AND last_event < ?1")
       .bind(event)
-      .bind(id)
+      .bind(webhook.id)
+      .bind(webhook.revision)
       .run();
+  return connection.changes() == 1;
 }
 
-void WebhookStore::passed_over(std::int64_t id, std::int64_t event) {
+bool WebhookStore::passed_over(const WebhookRecord& webhook, std::int64_t event) {
   const std::scoped_lock hold(store_.state_->mutex);
-  store_.state_->connection
-      .prepare("UPDATE webhook SET last_event = ?1 WHERE id = ?2 AND last_event < ?1")
+  Connection& connection = store_.state_->connection;
+  connection
+      .prepare(
+          "UPDATE webhook SET last_event = ?1 WHERE id = ?2 AND revision = ?3 AND last_event < ?1")
       .bind(event)
-      .bind(id)
+      .bind(webhook.id)
+      .bind(webhook.revision)
       .run();
+  return connection.changes() == 1;
 }
 
-void WebhookStore::failed(std::int64_t id,
+bool WebhookStore::failed(const WebhookRecord& webhook,
                           std::string_view state,
                           const std::string& account,
                           std::int64_t next_at) {
   const std::scoped_lock hold(store_.state_->mutex);
-  store_.state_->connection
+  Connection& connection = store_.state_->connection;
+  connection
       .prepare(
           "UPDATE webhook SET state = ?, account = ?, next_at = ?, failures = failures + 1, "
-          "failed = failed + 1 WHERE id = ?")
+          "failed = failed + 1 WHERE id = ? AND revision = ?")
       .bind(state)
       .bind(std::string_view(account))
       .bind(next_at)
-      .bind(id)
+      .bind(webhook.id)
+      .bind(webhook.revision)
       .run();
+  return connection.changes() == 1;
 }
 
 WebhookFigures WebhookStore::figures() const {

@@ -28,6 +28,7 @@ struct WebhookRecord {
   std::int64_t delivered = 0;   ///< in all
   std::int64_t failed = 0;      ///< attempts in all
   std::optional<std::string> account;  ///< of the last failure
+  std::int64_t revision = 0;           ///< how often it was replaced
 };
 
 struct WebhookFigures {
@@ -57,11 +58,13 @@ class WebhookStore {
   [[nodiscard]] std::vector<WebhookRecord> webhooks() const;  ///< oldest first
   [[nodiscard]] std::vector<WebhookRecord> due(std::int64_t now) const;
 
+  // What became of events, of a webhook as it was when they were sent: one that was replaced or
+  // removed since does not change. False where it was.
   /// That event was told.
-  void delivered(std::int64_t id, std::int64_t event);
+  bool delivered(const WebhookRecord& webhook, std::int64_t event);
   /// All up to that event were not for it.
-  void passed_over(std::int64_t id, std::int64_t event);
-  void failed(std::int64_t id,
+  bool passed_over(const WebhookRecord& webhook, std::int64_t event);
+  bool failed(const WebhookRecord& webhook,
               std::string_view state,
               const std::string& account,
               std::int64_t next_at);

@@ -43,7 +43,8 @@ Message message_for(const db::WebhookRecord& webhook,
           .body = std::move(body)};
 }
 
-/// True where the event has arrived; else when to try again, or that nobody will, is kept.
+/// True where the event has arrived and the webhook is still that one; else when to try again, or
+/// that nobody will, is kept.
 bool tell(db::Store& store,
           const Post& post,
           const db::WebhookRecord& webhook,
@@ -54,8 +55,7 @@ bool tell(db::Store& store,
   db::WebhookStore webhooks(store);
   const Posted posted = post(message_for(webhook, event, clock()), stop);
   if (posted.status >= 200 && posted.status < 300) {
-    webhooks.delivered(webhook.id, event.id);
-    return true;
+    return webhooks.delivered(webhook, event.id);
   }
   if (stop.stop_requested()) return false;  // the receiver is not to blame
   const std::string account = posted.status == 0
@@ -65,7 +65,7 @@ bool tell(db::Store& store,
   const bool again = attempt < delivery_waits.size();
   const std::string_view state = posted.status == gone ? "disabled" : again ? "active" : "parked";
   const std::int64_t wait = again ? second * delivery_waits.at(attempt) : 0;
-  webhooks.failed(webhook.id, state, account, clock() + wait);
+  webhooks.failed(webhook, state, account, clock() + wait);
   return false;
 }
 
@@ -91,7 +91,7 @@ void deliver(db::Store& store,
   }
   // What is not for it is read again until a page is full of it: that costs no write.
   if (events.size() == page && events.back().id > last) {
-    db::WebhookStore(store).passed_over(webhook.id, events.back().id);
+    db::WebhookStore(store).passed_over(webhook, events.back().id);
   }
 }
 
