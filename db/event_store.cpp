@@ -9,8 +9,9 @@ std::vector<EventRecord> EventStore::events(const std::optional<std::int64_t>& c
                                             int limit) const {
   const std::scoped_lock hold(store_.state_->mutex);
   Statement row = store_.state_->connection.prepare(
-      std::string("SELECT id, created_at, kind, calibration_id, diagnosis_id, name, misfit, error, "
-                  "detail FROM event WHERE ") +
+      std::string(
+          "SELECT id, created_at, kind, calibration_id, diagnosis_id, schedule_id, night_id, "
+          "name, misfit, error, detail FROM event WHERE ") +
       (calibration ? "calibration_id = ?3 AND " : "") + "id > ?1 ORDER BY id LIMIT ?2");
   row.bind(after).bind(static_cast<std::int64_t>(limit));
   if (calibration) row.bind(*calibration);
@@ -21,10 +22,12 @@ std::vector<EventRecord> EventStore::events(const std::optional<std::int64_t>& c
                       row.text(2),
                       row.integer_or_null(3),
                       row.integer_or_null(4),
-                      row.text_or_null(5),
-                      row.real_or_null(6),
+                      row.integer_or_null(5),
+                      row.integer_or_null(6),
                       row.text_or_null(7),
-                      row.text_or_null(8)});
+                      row.real_or_null(8),
+                      row.text_or_null(9),
+                      row.text_or_null(10)});
   }
   return events;
 }

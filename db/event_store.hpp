@@ -14,11 +14,11 @@ struct EventRecord {
   std::int64_t id = 0;
   std::int64_t created_at = 0;  ///< microseconds since 1970 UTC
   std::string kind;             ///< calibration.done, diagnosis.running, ...
-  std::optional<std::int64_t> calibration, diagnosis;
+  std::optional<std::int64_t> calibration, diagnosis, schedule, night;
   std::optional<std::string> name;  ///< of the study
   std::optional<double> misfit;
   std::optional<std::string> error;
-  std::optional<std::string> detail;  ///< document
+  std::optional<std::string> detail;  ///< document: the progress, or what a night came to
 };
 
 class EventStore {

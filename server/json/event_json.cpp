@@ -13,10 +13,15 @@ Json data_of(const db::EventRecord& event) {
   Json data;
   data["calibration"] = event.calibration ? Json(*event.calibration) : Json(nullptr);
   if (event.diagnosis) data["diagnosis"] = *event.diagnosis;
+  if (event.schedule) data["schedule"] = *event.schedule;
+  if (event.night) data["night"] = *event.night;
   if (event.name) data["name"] = *event.name;
   if (event.misfit) data["misfit"] = number_or_null(*event.misfit);
   if (event.error) data["error"] = *event.error;
-  if (event.detail) data["progress"] = Json::parse(*event.detail, nullptr, false);
+  if (event.detail) {
+    const char* detail = event.kind == "calibration.progress" ? "progress" : "result";
+    data[detail] = Json::parse(*event.detail, nullptr, false);
+  }
   return data;
 }
 

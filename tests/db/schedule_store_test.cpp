@@ -1,7 +1,10 @@
 #include "db/schedule_store.hpp"
 
+#include <set>
+
 #include <catch2/catch.hpp>
 
+#include "db/event_store.hpp"
 #include "db/sqlite.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -50,6 +53,37 @@ TEST_CASE("the same night begins once, and ends once with its promotion", "[db]"
   CHECK(schedules.promotions(id)[0].night == night);
   schedules.promote(id, calibration, "again", 300);
   CHECK(schedules.promotions(id)[0].reason == "again");
+}
+
+TEST_CASE("the events of a night and of a promotion name their schedule", "[db]") {
+  const TemporaryFolder folder;
+  Store store(folder / "a.db", Access::write);
+  ScheduleStore schedules(store);
+  schedules.add("another", "{}", 10);
+  const auto id = schedules.add("one", "{}", 10);
+  schedules.begin_night(id, 50, 50);
+  const auto night = schedules.begin_night(id, 100, 101);
+  const auto calibration = store.add_calibration("n", "{}", "d", 11);
+  schedules.set_night_calibration(*night, calibration, std::nullopt, std::nullopt);
+  const std::string result = R"({"alarms":["density"]})";
+  schedules.end_night(
+      *night, {.state = "done", .outcome = "moved", .result = result, .promotion = "why"}, 200);
+  schedules.promote(id, calibration, "by hand", 300);
+  const auto events = EventStore(store).events(std::nullopt, 1, 10);  // after the calibration's own
+  REQUIRE(events.size() == 4);
+  std::multiset<std::string> kinds;
+  for (const EventRecord& event : events) {
+    INFO(event.kind);
+    kinds.insert(event.kind);
+    CHECK(event.schedule == id);
+    CHECK(event.calibration == calibration);
+    if (event.id != events.back().id) CHECK(event.night == night);
+    const bool of_night = event.kind != "promotion";
+    CHECK(event.detail == (of_night ? std::optional(result) : std::nullopt));
+  }
+  CHECK(kinds ==
+        std::multiset<std::string>{"night.drift", "night.moved", "promotion", "promotion"});
+  CHECK_FALSE(events.back().night);  // nobody's night led to it
 }
 
 TEST_CASE("nights are listed newest first, page by page", "[db]") {
