@@ -118,8 +118,9 @@ std::int64_t Store::add_calibration(const std::string& name,
   const std::scoped_lock hold(state_->mutex);
   state_->connection
       .prepare(
-          "INSERT INTO calibration (name, state, created_at, request, request_digest) "
-          "VALUES (?, 'queued', ?, ?, ?)")
+          "INSERT INTO calibration (name, state, created_at, request, request_digest, parent_id) "
+          "VALUES (?1, 'queued', ?2, ?3, ?4, CASE WHEN json_valid(?3) THEN "
+          "json_extract(?3, '$.extends.calibration') END)")
       .bind(std::string_view(name))
       .bind(now)
       .bind(std::string_view(request))
@@ -186,10 +187,8 @@ std::vector<CalibrationRecord> Store::best_fits(const std::optional<std::string>
 
 std::vector<CalibrationRecord> Store::children(std::int64_t calibration) const {
   const std::scoped_lock hold(state_->mutex);
-  Statement row = state_->connection.prepare(select_calibration(
-      true,
-      "WHERE CASE WHEN json_valid(request) THEN json_extract(request, '$.extends.calibration') END "
-      "= ? ORDER BY id"));
+  Statement row =
+      state_->connection.prepare(select_calibration(true, "WHERE parent_id = ? ORDER BY id"));
   row.bind(calibration);
   std::vector<CalibrationRecord> records;
   while (row.step()) records.push_back(with_documents(row));

@@ -96,6 +96,9 @@ TEST_CASE("a database of every earlier schema is brought up to date with all of 
     {
       const Store store(database, Access::write);
       CHECK(store.used(1, 10, std::nullopt).size() == 2);
+      const auto children = store.children(1);
+      REQUIRE(children.size() == 1);
+      CHECK(children[0].name == "two");
     }
     CHECK(schema_of(database) == newest_schema());
     CHECK(rows_of(database, questions) == before);

@@ -105,6 +105,29 @@ TEST_CASE("the best fit of a name is its smallest misfit", "[db]") {
   CHECK(store.best_fits("c").empty());
 }
 
+TEST_CASE("the calibrations that extend one are found without reading the others", "[db]") {
+  const TemporaryFolder folder;
+  {
+    Store store(folder / "a.db", Access::write);
+    const auto parent = store.add_calibration("parent", "{}", "d", 1);
+    const std::string extends =
+        R"({"extends":{"calibration":)" + std::to_string(parent) + R"(,"effect":"e"}})";
+    const auto first = store.add_calibration("first", extends, "d", 1);
+    store.add_calibration("stranger", "no document", "d", 1);
+    const auto second = store.add_calibration("second", extends, "d", 1);
+    const auto children = store.children(parent);
+    REQUIRE(children.size() == 2);
+    CHECK(children[0].id == first);
+    CHECK(children[1].id == second);
+    CHECK(store.children(first).empty());
+  }
+  Connection connection(folder / "a.db", Connection::Mode::read);
+  auto plan =
+      connection.prepare("EXPLAIN QUERY PLAN SELECT id FROM calibration WHERE parent_id = 1");
+  REQUIRE(plan.step());
+  CHECK_THAT(plan.text(3), Catch::Contains("calibration_by_parent"));
+}
+
 TEST_CASE("the first answer to a question stays", "[db]") {
   const TemporaryFolder folder;
   Store store(folder / "a.db", Access::write);
