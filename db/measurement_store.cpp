@@ -6,10 +6,6 @@ namespace repose::db {
 
 namespace {
 
-std::optional<std::string_view> view(const std::optional<std::string>& text) {
-  return text ? std::optional<std::string_view>(*text) : std::nullopt;
-}
-
 constexpr std::string_view select_set =
     "SELECT id, name, version, material, created_at, measurements FROM measurement_set ";
 
@@ -63,7 +59,7 @@ std::vector<MeasurementSetRecord> MeasurementStore::list(
   Statement row = store_.state_->connection.prepare(
       "SELECT id, name, max(version), material, created_at, '' FROM measurement_set "
       "WHERE ?1 IS NULL OR name > ?1 GROUP BY name ORDER BY name LIMIT ?2");
-  row.bind(view(after)).bind(static_cast<std::int64_t>(limit));
+  row.bind(after).bind(static_cast<std::int64_t>(limit));
   std::vector<MeasurementSetRecord> records;
   while (row.step()) records.push_back(set_of(row));
   return records;
@@ -82,7 +78,7 @@ std::int64_t MeasurementStore::add_calibration(const std::string& name,
           "INSERT INTO calibration_source (calibration_id, material, measurement_set_id) "
           "VALUES (?, ?, ?)")
       .bind(calibration)
-      .bind(view(source.material))
+      .bind(source.material)
       .bind(source.set)
       .run();
   transaction.commit();
@@ -98,8 +94,8 @@ std::vector<FitRecord> MeasurementStore::fits(const FitFilter& filter, int limit
       "LEFT JOIN measurement_set m ON m.id = s.measurement_set_id "
       "WHERE c.state = 'done' AND c.fit IS NOT NULL AND (?1 IS NULL OR s.material = ?1) "
       "AND (?2 IS NULL OR c.name = ?2) AND (?3 IS NULL OR c.id < ?3) ORDER BY c.id DESC LIMIT ?4");
-  row.bind(view(filter.material))
-      .bind(view(filter.name))
+  row.bind(filter.material)
+      .bind(filter.name)
       .bind(filter.before)
       .bind(static_cast<std::int64_t>(limit));
   std::vector<FitRecord> records;

@@ -39,10 +39,6 @@ constexpr std::string_view select_night =
     "SELECT id, schedule_id, planned_at, started_at, finished_at, state, outcome, incumbent_id, "
     "calibration_id, continues, diagnosis_id, result FROM night ";
 
-std::optional<std::string_view> view(const std::optional<std::string>& text) {
-  return text ? std::optional<std::string_view>(*text) : std::nullopt;
-}
-
 }  // namespace
 
 std::int64_t ScheduleStore::add(const std::string& name,
@@ -130,7 +126,7 @@ void ScheduleStore::set_night_calibration(std::int64_t night,
           "WHERE id = ? AND state = 'running'")
       .bind(calibration)
       .bind(incumbent)
-      .bind(view(continues))
+      .bind(continues)
       .bind(night)
       .run();
 }
@@ -144,7 +140,7 @@ bool ScheduleStore::end_night(std::int64_t night, const NightEnd& end, std::int6
           "UPDATE night SET state = ?, outcome = ?, diagnosis_id = ?, result = ?, finished_at = ? "
           "WHERE id = ? AND state = 'running'")
       .bind(std::string_view(end.state))
-      .bind(view(end.outcome))
+      .bind(end.outcome)
       .bind(end.diagnosis)
       .bind(std::string_view(end.result))
       .bind(now)

@@ -68,35 +68,6 @@ void set_up(Connection& connection, Access access) {
 
 }  // namespace
 
-EvaluationRecord evaluation_of(const Statement& row, int first) {
-  return {row.text(first),
-          row.text(first + 1),
-          row.text(first + 2),
-          row.real(first + 3),
-          row.text(first + 4),
-          row.integer(first + 5)};
-}
-
-void note_keys(Connection& connection,
-               const std::string& table,
-               std::int64_t owner,
-               std::int64_t first_ordinal,
-               const std::vector<std::string>& keys) {
-  const std::string used = table + "_evaluation", id = table + "_id";
-  Transaction transaction(connection);
-  connection.prepare("DELETE FROM " + used + " WHERE " + id + " = ? AND ordinal >= ?")
-      .bind(owner)
-      .bind(first_ordinal)
-      .run();
-  Statement insert =
-      connection.prepare("INSERT INTO " + used + " (" + id + ", ordinal, key) VALUES (?, ?, ?)");
-  std::int64_t ordinal = first_ordinal;
-  for (const std::string& key : keys) {
-    insert.bind(owner).bind(ordinal++).bind(std::string_view(key)).run();
-  }
-  transaction.commit();
-}
-
 Store::State::State(const std::filesystem::path& file, Access access)
     : lock(access == Access::write ? std::make_unique<FileLock>(file) : nullptr),
       connection(file, access == Access::write ? Connection::Mode::write : Connection::Mode::read) {
@@ -161,13 +132,7 @@ std::optional<CalibrationRecord> Store::unfinished(const std::string& digest) co
 }
 
 std::vector<std::int64_t> Store::in_state(std::string_view state) const {
-  const std::scoped_lock hold(state_->mutex);
-  Statement row =
-      state_->connection.prepare("SELECT id FROM calibration WHERE state = ? ORDER BY id");
-  row.bind(state);
-  std::vector<std::int64_t> ids;
-  while (row.step()) ids.push_back(row.integer(0));
-  return ids;
+  return state_->in_state("calibration", state);
 }
 
 std::vector<CalibrationRecord> Store::best_fits(const std::optional<std::string>& name) const {
@@ -179,7 +144,7 @@ std::vector<CalibrationRecord> Store::best_fits(const std::optional<std::string>
                          "(PARTITION BY name ORDER BY misfit, id DESC) AS place FROM calibration "
                          "WHERE fit IS NOT NULL AND misfit IS NOT NULL AND state = 'done' "
                          "AND (?1 IS NULL OR name = ?1)) WHERE place = 1) ORDER BY name"));
-  row.bind(name ? std::optional<std::string_view>(*name) : std::nullopt);
+  row.bind(name);
   std::vector<CalibrationRecord> records;
   while (row.step()) records.push_back(with_documents(row));
   return records;
@@ -216,14 +181,7 @@ bool Store::start(std::int64_t id, std::int64_t now) {
   return state_->connection.changes() == 1;
 }
 
-bool Store::requeue(std::int64_t id) {
-  const std::scoped_lock hold(state_->mutex);
-  state_->connection
-      .prepare("UPDATE calibration SET state = 'queued' WHERE id = ? AND state = 'running'")
-      .bind(id)
-      .run();
-  return state_->connection.changes() == 1;
-}
+bool Store::requeue(std::int64_t id) { return state_->requeue("calibration", id); }
 
 void Store::requeue_all() {
   const std::scoped_lock hold(state_->mutex);
@@ -232,13 +190,7 @@ void Store::requeue_all() {
 }
 
 void Store::set_progress(std::int64_t id, const std::string& progress) {
-  const std::scoped_lock hold(state_->mutex);
-  state_->connection
-      .prepare(
-          "UPDATE calibration SET progress = ? WHERE id = ? AND state IN ('queued', 'running')")
-      .bind(std::string_view(progress))
-      .bind(id)
-      .run();
+  state_->set_progress("calibration", id, progress);
 }
 
 bool Store::finish(std::int64_t id,
@@ -248,17 +200,14 @@ bool Store::finish(std::int64_t id,
                    const std::optional<std::string>& error,
                    std::int64_t now) {
   const std::scoped_lock hold(state_->mutex);
-  const auto view = [](const std::optional<std::string>& text) {
-    return text ? std::optional<std::string_view>(*text) : std::nullopt;
-  };
   state_->connection
       .prepare(
           "UPDATE calibration SET state = ?, fit = ?, misfit = ?, error = ?, finished_at = ? "
           "WHERE id = ? AND state IN ('queued', 'running')")
       .bind(state)
-      .bind(view(fit))
+      .bind(fit)
       .bind(misfit)
-      .bind(view(error))
+      .bind(error)
       .bind(now)
       .bind(id)
       .run();
@@ -306,22 +255,13 @@ std::vector<EvaluationRecord> Store::evaluations_before(const std::string& engin
 void Store::note_used(std::int64_t calibration,
                       std::int64_t first_ordinal,
                       const std::vector<std::string>& keys) {
-  const std::scoped_lock hold(state_->mutex);
-  note_keys(state_->connection, "calibration", calibration, first_ordinal, keys);
+  state_->note_used("calibration", calibration, first_ordinal, keys);
 }
 
 std::vector<UsedEvaluation> Store::used(std::int64_t calibration,
                                         int limit,
                                         std::optional<std::int64_t> after) const {
-  const std::scoped_lock hold(state_->mutex);
-  Statement row = state_->connection.prepare(
-      "SELECT u.ordinal, e.key, e.question, e.answer, e.seconds, e.engine_version, e.created_at "
-      "FROM calibration_evaluation u JOIN evaluation e ON e.key = u.key "
-      "WHERE u.calibration_id = ?1 AND u.ordinal > ?2 ORDER BY u.ordinal LIMIT ?3");
-  row.bind(calibration).bind(after.value_or(-1)).bind(static_cast<std::int64_t>(limit));
-  std::vector<UsedEvaluation> result;
-  while (row.step()) result.push_back({row.integer(0), evaluation_of(row, 1)});
-  return result;
+  return state_->used("calibration", calibration, limit, after.value_or(-1));
 }
 
 }  // namespace repose::db

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "db/store_state.hpp"
 
 namespace repose::db {
@@ -69,12 +71,7 @@ std::optional<DiagnosisRecord> Store::unfinished_diagnosis(std::int64_t calibrat
 }
 
 std::vector<std::int64_t> Store::queued_diagnoses() const {
-  const std::scoped_lock hold(state_->mutex);
-  Statement row =
-      state_->connection.prepare("SELECT id FROM diagnosis WHERE state = 'queued' ORDER BY id");
-  std::vector<std::int64_t> ids;
-  while (row.step()) ids.push_back(row.integer(0));
-  return ids;
+  return state_->in_state("diagnosis", "queued");
 }
 
 bool Store::start_diagnosis(std::int64_t id) {
@@ -86,22 +83,10 @@ bool Store::start_diagnosis(std::int64_t id) {
   return state_->connection.changes() == 1;
 }
 
-bool Store::requeue_diagnosis(std::int64_t id) {
-  const std::scoped_lock hold(state_->mutex);
-  state_->connection
-      .prepare("UPDATE diagnosis SET state = 'queued' WHERE id = ? AND state = 'running'")
-      .bind(id)
-      .run();
-  return state_->connection.changes() == 1;
-}
+bool Store::requeue_diagnosis(std::int64_t id) { return state_->requeue("diagnosis", id); }
 
 void Store::set_diagnosis_progress(std::int64_t id, const std::string& progress) {
-  const std::scoped_lock hold(state_->mutex);
-  state_->connection
-      .prepare("UPDATE diagnosis SET progress = ? WHERE id = ? AND state IN ('queued', 'running')")
-      .bind(std::string_view(progress))
-      .bind(id)
-      .run();
+  state_->set_progress("diagnosis", id, progress);
 }
 
 bool Store::finish_diagnosis(std::int64_t id,
@@ -110,16 +95,13 @@ bool Store::finish_diagnosis(std::int64_t id,
                              const std::optional<std::string>& error,
                              std::int64_t now) {
   const std::scoped_lock hold(state_->mutex);
-  const auto view = [](const std::optional<std::string>& text) {
-    return text ? std::optional<std::string_view>(*text) : std::nullopt;
-  };
   state_->connection
       .prepare(
           "UPDATE diagnosis SET state = ?, result = ?, error = ?, finished_at = ? "
           "WHERE id = ? AND state IN ('queued', 'running')")
       .bind(state)
-      .bind(view(result))
-      .bind(view(error))
+      .bind(result)
+      .bind(error)
       .bind(now)
       .bind(id)
       .run();
@@ -129,20 +111,11 @@ bool Store::finish_diagnosis(std::int64_t id,
 void Store::note_used_by_diagnosis(std::int64_t diagnosis,
                                    std::int64_t first_ordinal,
                                    const std::vector<std::string>& keys) {
-  const std::scoped_lock hold(state_->mutex);
-  note_keys(state_->connection, "diagnosis", diagnosis, first_ordinal, keys);
+  state_->note_used("diagnosis", diagnosis, first_ordinal, keys);
 }
 
 std::vector<UsedEvaluation> Store::used_by_diagnosis(std::int64_t diagnosis) const {
-  const std::scoped_lock hold(state_->mutex);
-  Statement row = state_->connection.prepare(
-      "SELECT u.ordinal, e.key, e.question, e.answer, e.seconds, e.engine_version, e.created_at "
-      "FROM diagnosis_evaluation u JOIN evaluation e ON e.key = u.key "
-      "WHERE u.diagnosis_id = ? ORDER BY u.ordinal");
-  row.bind(diagnosis);
-  std::vector<UsedEvaluation> result;
-  while (row.step()) result.push_back({row.integer(0), evaluation_of(row, 1)});
-  return result;
+  return state_->used("diagnosis", diagnosis, std::numeric_limits<int>::max(), -1);
 }
 
 }  // namespace repose::db
