@@ -1,5 +1,6 @@
 // A calibration that is killed again and again ends with the fit of one that was left alone.
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <signal.h>
@@ -10,14 +11,23 @@
 
 #include <catch2/catch.hpp>
 
-#include "server/json/report_json.hpp"
+#include "db/sqlite.hpp"
+#include "db/store.hpp"
+#include "server/jobs/clock.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
+using repose::db::Access;
+using repose::db::Connection;
+using repose::db::Statement;
+using repose::db::Store;
+using repose::server::microseconds_now;
 using repose::tests::repose_program;
 using repose::tests::TemporaryFolder;
 
 namespace {
+
+constexpr std::int64_t workers = 2;
 
 std::string read(const std::filesystem::path& path) {
   std::ifstream file(path);
@@ -44,8 +54,8 @@ pid_t start(const std::filesystem::path& study,
             const std::filesystem::path& database,
             const std::filesystem::path& output) {
   std::string command = "exec '" + repose_program + "' calibrate " + study.string() + " --db " +
-                        database.string() + " --no-pictures --json > " + output.string() +
-                        " 2>/dev/null";
+                        database.string() + " --workers " + std::to_string(workers) +
+                        " --no-pictures --json > " + output.string() + " 2>/dev/null";
   std::string shell = "/bin/sh", flag = "-c";
   std::array<char*, 4> arguments{shell.data(), flag.data(), command.data(), nullptr};
   pid_t child = 0;
@@ -61,15 +71,34 @@ std::string fit_of(const std::filesystem::path& output) {
   return text.substr(at);
 }
 
-std::size_t rows_stored(const std::filesystem::path& database) {
-  std::error_code none;
-  const auto size = std::filesystem::file_size(database.string() + "-wal", none);
-  return none ? 0 : size;
+std::int64_t count(const std::filesystem::path& database, const std::string& of) {
+  Connection connection(database, Connection::Mode::read);
+  Statement row = connection.prepare("SELECT count(*) FROM " + of);
+  row.step();
+  return row.integer(0);
+}
+
+/// Kills the process in the midst of an evaluation, once so many are stored. False where it ended
+/// by itself.
+bool kill_at(pid_t child,
+             std::int64_t begun,
+             std::int64_t stored,
+             const std::filesystem::path& database) {
+  const std::string running =
+      "attempt WHERE state = 'running' AND started_at >= " + std::to_string(begun);
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (count(database, "evaluation") < stored || count(database, running) == 0) continue;
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+    return WIFSIGNALED(status);
+  }
+  return false;
 }
 
 }  // namespace
 
-TEST_CASE("kill -9 at any moment costs no evaluation and changes no bit of the fit",
+TEST_CASE("kill -9 in the midst of evaluations costs none that is stored and no bit of the fit",
           "[end_to_end][slow]") {
   const TemporaryFolder folder;
   const auto study = slow_study(folder);
@@ -78,22 +107,21 @@ TEST_CASE("kill -9 at any moment costs no evaluation and changes no bit of the f
   REQUIRE(status == 0);
 
   const auto database = folder / "killed.db";
-  int kills = 0;
-  for (int moment = 1; moment <= 5; ++moment) {
-    const pid_t child = start(study, database, folder / "killed.json");
-    // Wait for the log to grow by a little more each time, then kill.
-    const std::size_t before = rows_stored(database);
-    const std::size_t wanted = before + 9000U * static_cast<std::size_t>(moment);
-    while (waitpid(child, &status, WNOHANG) == 0) {
-      if (rows_stored(database) < wanted) continue;
-      kill(child, SIGKILL);
-      waitpid(child, &status, 0);
-      ++kills;
-      break;
-    }
+  { const Store empty(database, Access::write); }  // the kills are not to fall into its making
+  std::int64_t kills = 0;
+  for (const std::int64_t stored : {1, 3, 5, 7, 9}) {
+    const std::int64_t begun = microseconds_now();
+    kills += kill_at(start(study, database, folder / "killed.json"), begun, stored, database);
   }
-  CHECK(kills > 0);
+  CHECK(kills == 5);
   waitpid(start(study, database, folder / "killed.json"), &status, 0);
   REQUIRE(status == 0);
   CHECK(fit_of(folder / "killed.json") == fit_of(folder / "whole.json"));
+
+  CHECK(count(database, "evaluation") == count(folder / "whole.db", "evaluation"));
+  CHECK(count(database, "attempt WHERE state = 'answered'") == count(database, "evaluation"));
+  const std::int64_t lost = count(database, "attempt WHERE state = 'lost'");
+  CHECK(lost > 0);
+  CHECK(lost <= kills * workers);
+  CHECK(count(database, "attempt") == count(database, "evaluation") + lost);
 }
