@@ -1,13 +1,17 @@
 #include "db/store.hpp"
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <sys/resource.h>
 #include <thread>
 
 #include <catch2/catch.hpp>
 
+#include "db/backup.hpp"
 #include "db/migrate.hpp"
 #include "db/sqlite.hpp"
+#include "tests/support/database_rows.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace repose::db;
@@ -18,6 +22,26 @@ namespace {
 EvaluationRecord evaluation(const std::string& key) {
   return {key, "question of " + key, "answer of " + key, 1.5, "v1", 42};
 }
+
+/// While it lives, no file of this process grows beyond so many bytes: to write there fails.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &former_);
+    const rlimit limited{bytes, former_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limited);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &former_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit former_{};
+  void (*handler_)(int);
+};
 
 }  // namespace
 
@@ -219,26 +243,44 @@ TEST_CASE("a reader of nothing, of rubbish and of a newer file is told so", "[db
   CHECK_THROWS_WITH(Store(folder / "newer.db", Access::write), Catch::Contains("newer repose"));
 }
 
-TEST_CASE("a full disk fails the verb, not the file", "[db]") {
+TEST_CASE("a verb that the disk has no room for fails, and the store goes on", "[db]") {
   const TemporaryFolder folder;
   const auto file = folder / "a.db";
-  Store store(file, Access::write);
-  store.add_evaluation(evaluation("before"));
-  // The cap is the connection's own; a second connection cannot set it, so fill a capped one.
+  EvaluationRecord large = evaluation("large");
+  large.answer = std::string(200'000, 'x');
   {
-    Connection capped(folder / "capped.db", Connection::Mode::write);
-    migrate(capped);
-    capped.run("PRAGMA max_page_count = 40");
-    const std::string big(200000, 'x');
-    auto insert = capped.prepare("INSERT INTO evaluation VALUES ('k', 'q', ?, 1.0, 'v', 1)");
-    insert.bind(std::string_view(big));
-    CHECK_THROWS_WITH(insert.step(), Catch::Contains("disk is full"));
-    CHECK(capped.prepare("SELECT count(*) FROM evaluation").step());
-    auto check = capped.prepare("PRAGMA integrity_check");
-    check.step();
-    CHECK(check.text(0) == "ok");
+    Store store(file, Access::write);
+    store.add_evaluation(evaluation("before"));
+    const std::string before = repose::tests::all_rows(file);
+    {
+      const FileSizeLimit limit(std::filesystem::file_size(file.string() + "-wal") + 8192);
+      CHECK_THROWS_WITH(store.add_evaluation(large), Catch::Contains("the disk failed to"));
+      CHECK_THROWS_AS(store.add_evaluation(large), Error);
+      CHECK_FALSE(store.evaluation("large"));
+      CHECK(store.evaluation("before"));
+    }
+    CHECK(repose::tests::all_rows(file) == before);
+    CHECK(store.add_evaluation(large));
   }
-  CHECK(store.evaluation("before").has_value());
+  CHECK(Store(file, Access::read).evaluation("large")->answer == large.answer);
+  CHECK(examine(file).empty());
+}
+
+TEST_CASE("a full database is named as such and stays sound", "[db]") {
+  const TemporaryFolder folder;
+  Connection capped(folder / "capped.db", Connection::Mode::write);
+  migrate(capped);
+  capped.run("PRAGMA max_page_count = 60");
+  const std::string big(300'000, 'x');
+  auto insert = capped.prepare("INSERT INTO evaluation VALUES ('k', 'q', ?, 1.0, 'v', 1)");
+  insert.bind(std::string_view(big));
+  CHECK_THROWS_WITH(insert.step(), Catch::Contains("disk is full"));
+  auto stored = capped.prepare("SELECT count(*) FROM evaluation");
+  stored.step();
+  CHECK(stored.integer(0) == 0);
+  auto check = capped.prepare("PRAGMA integrity_check");
+  check.step();
+  CHECK(check.text(0) == "ok");
 }
 
 TEST_CASE("many threads write without loss", "[db]") {

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/not_tried.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/served.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -32,7 +33,7 @@ httplib::Result submit(httplib::Client& client, int number) {
 TEST_CASE("a disk that fails to sync costs answers, but no acknowledged job and no calibration",
           "[end_to_end][slow]") {
   if (std::system("command -v fiu-run > /dev/null && command -v fiu-ctrl > /dev/null") != 0) {
-    WARN("fiu-run is not installed: not tried");
+    not_tried("fiu-run is not installed");
     return;
   }
   const TemporaryFolder folder;

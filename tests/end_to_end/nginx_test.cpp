@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "tests/support/api.hpp"
+#include "tests/support/not_tried.hpp"
 #include "tests/support/wire.hpp"
 
 namespace {
@@ -115,7 +116,7 @@ TEST_CASE("every token that the shipped files make is made beside the database t
 
 TEST_CASE("the site that is shipped serves, streams, and limits", "[end_to_end][slow]") {
   if (access("/usr/sbin/nginx", X_OK) != 0) {
-    WARN("nginx is not installed: not tried");
+    not_tried("nginx is not installed");
     return;
   }
   const TemporaryFolder folder;
