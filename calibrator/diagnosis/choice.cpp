@@ -23,11 +23,6 @@ std::vector<std::size_t> testable(const Screen& screen,
   return order;
 }
 
-bool same_trace(const Screen& screen, std::size_t a, std::size_t b) {
-  return std::abs(screen.similarity()(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b))) >
-         alike;
-}
-
 }  // namespace
 
 std::vector<Additions> best_singles(const Screen& screen,
@@ -37,8 +32,8 @@ std::vector<Additions> best_singles(const Screen& screen,
   const std::vector<std::size_t> order = testable(screen, screened, diagnosis);
   std::vector<std::size_t> chosen, passed_over;
   for (const std::size_t i : order) {
-    const bool stood_for = std::ranges::any_of(
-        chosen, [&](std::size_t other) { return same_trace(screen, i, other); });
+    const bool stood_for =
+        std::ranges::any_of(chosen, [&](std::size_t other) { return screen.same_trace(i, other); });
     (stood_for || chosen.size() == most ? passed_over : chosen).push_back(i);
   }
   for (std::size_t k = 0; chosen.size() < most && k < passed_over.size(); ++k) {

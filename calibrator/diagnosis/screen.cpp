@@ -95,6 +95,12 @@ Screen::Screen(const ModelFit& base, const ModelSpace& space, std::vector<Depart
   }
 }
 
+bool Screen::same_trace(std::size_t a, std::size_t b) const {
+  const double similarity = similarity_(static_cast<Index>(a), static_cast<Index>(b));
+  const bool mirrored = departures_[a].two_sided || departures_[b].two_sided;
+  return (mirrored ? std::abs(similarity) : similarity) > alike;
+}
+
 double Screen::pair_gain(std::size_t a, std::size_t b) const {
   const auto i = static_cast<Index>(a), j = static_cast<Index>(b);
   const double aa = products_(i, i), bb = products_(j, j), ab = products_(i, j);

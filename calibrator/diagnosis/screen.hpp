@@ -34,6 +34,9 @@ namespace repose::calibrator {
 /// Beyond it a strength is no longer plausible.
 inline constexpr double largest_strength = 1.3;
 
+/// Similarity beyond which two traces are one.
+inline constexpr double alike = 0.95;
+
 /// How the predictions change along one departure.
 struct Departure {
   Eigen::VectorXd change;  ///< of the targets per unit of strength, in their units
@@ -59,6 +62,10 @@ class Screen {
 
   [[nodiscard]] const std::vector<Score>& scores() const { return scores_; }
   [[nodiscard]] const Eigen::MatrixXd& similarity() const { return similarity_; }  ///< c_jk
+
+  /// Whether the data cannot tell two departures apart. Mirror images are told apart where neither
+  /// strength can fall below zero: what speaks for one speaks against the other.
+  [[nodiscard]] bool same_trace(std::size_t a, std::size_t b) const;
 
   /// What is left of a departure once the free parameters have done their best, whitened: one value
   /// per target, then the prior's.

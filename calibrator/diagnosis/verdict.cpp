@@ -187,9 +187,7 @@ void find_families(const Screen& screen,
     std::vector<std::size_t> family{screened[a]};
     for (std::size_t b = a + 1; b < screened.size(); ++b) {
       if (diagnosis.effects[screened[b]].status == EffectStatus::not_testable) continue;
-      const double similarity =
-          screen.similarity()(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
-      if (taken[b] || std::abs(similarity) <= alike) continue;
+      if (taken[b] || !screen.same_trace(a, b)) continue;
       family.push_back(screened[b]);
       taken[b] = true;
     }

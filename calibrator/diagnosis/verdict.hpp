@@ -19,9 +19,6 @@ namespace repose::calibrator {
 /// Of two deviances that the data cannot tell apart.
 inline constexpr double close_deviances = 6.0;
 
-/// Similarity beyond which two traces are one.
-inline constexpr double alike = 0.95;
-
 bool adequate(const Diagnosis& diagnosis);
 
 /// Whether no single effect fits, nor an excuse.

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "calibrator/diagnosis/chi_squared.hpp"
+#include "calibrator/diagnosis/verdict.hpp"
 
 using namespace repose::calibrator;
 using Eigen::MatrixXd;
@@ -82,6 +83,27 @@ TEST_CASE("what the parameters imitate leaves no trace, and a strength below zer
   CHECK(screen.scores()[1].value == 0.0);
   CHECK(screen.scores()[2].value > 1.0);
   CHECK(screen.similarity()(1, 2) == Approx(1.0));
+}
+
+TEST_CASE("mirror images are one trace only where a strength can fall below zero", "[calibrator]") {
+  const MatrixXd slopes = (MatrixXd(3, 1) << 1, 1, 1).finished();
+  const VectorXd trace = (VectorXd(3) << -1, 0, 1).finished();
+  const Fitted base = fitted(slopes, trace);
+  const std::vector<Departure> departures{
+      {trace, false}, {2.0 * trace, false}, {-trace, false}, {-trace, true}};
+  const Screen screen(base.fit, base.space, departures);
+  CHECK(screen.similarity()(0, 2) == Approx(-1.0));
+  CHECK(screen.scores()[2].value == 0.0);  // what speaks for the first speaks against it
+  CHECK(screen.same_trace(0, 1));
+  CHECK_FALSE(screen.same_trace(0, 2));
+  CHECK(screen.same_trace(0, 3));
+
+  Diagnosis diagnosis;
+  for (int k = 0; k < 3; ++k) {
+    diagnosis.effects.emplace_back().status = EffectStatus::excluded;
+  }
+  find_families(screen, {0, 1, 2}, diagnosis);
+  CHECK(diagnosis.families == std::vector<std::vector<std::size_t>>{{0, 1}});
 }
 
 TEST_CASE("scatter of the runs behind a trace adds information to it but no power",
