@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
-#include "calibrator/diagnosis/chi_squared.hpp"
+#include "calibrator/diagnosis/chance.hpp"
 #include "calibrator/diagnosis/covariance.hpp"
 #include "calibrator/misfit.hpp"
 #include "calibrator/phrase.hpp"
@@ -35,27 +37,38 @@ ComparedMeasurement row_of(const Measurement& measurement,
   return row;
 }
 
-/// Of the fitted rows, with the tolerances that readings of one observable share.
-double joint_misfit(const Calibration& calibration,
-                    const std::vector<ComparedMeasurement>& rows,
-                    const Tolerances& stated) {
-  std::vector<Index> fitted;
+/// Of the differences: the tolerances that readings of one observable share, and the scatter of the
+/// confirming runs.
+Eigen::MatrixXd joint_covariance(const Calibration& calibration,
+                                 const std::vector<ComparedMeasurement>& rows,
+                                 const Tolerances& stated) {
+  Eigen::MatrixXd covariance = covariance_of(calibration.measurements, stated);
   for (const ComparedMeasurement& row : rows) {
+    const auto j = static_cast<Index>(row.measurement);
+    covariance(j, j) += row.simulation_error * row.simulation_error;
+  }
+  return covariance;
+}
+
+/// Misfit of the fitted rows, and the chance of one so large.
+void weigh_together(const Calibration& calibration,
+                    const Eigen::MatrixXd& covariance,
+                    Index learnt,
+                    Comparison& comparison) {
+  std::vector<Index> fitted;
+  std::vector<double> gaps;
+  for (const ComparedMeasurement& row : comparison.rows) {
     const Measurement& measurement = calibration.measurements[row.measurement];
-    if (measurement.role == Role::fit && std::isfinite(row.difference)) {
-      fitted.push_back(static_cast<Index>(row.measurement));
-    }
+    if (measurement.role != Role::fit || !std::isfinite(row.difference)) continue;
+    fitted.push_back(static_cast<Index>(row.measurement));
+    gaps.push_back(row.difference);
   }
-  if (fitted.empty()) return 0.0;
-  Eigen::MatrixXd covariance = covariance_of(calibration.measurements, stated)(fitted, fitted);
-  Eigen::VectorXd gap(static_cast<Index>(fitted.size()));
-  for (Index i = 0; i < gap.size(); ++i) {
-    const ComparedMeasurement& row =
-        rows[static_cast<std::size_t>(fitted[static_cast<std::size_t>(i)])];
-    covariance(i, i) += row.simulation_error * row.simulation_error;
-    gap(i) = row.difference;
-  }
-  return gap.dot(covariance.llt().solve(gap));
+  if (fitted.empty()) return;
+  const auto gap = Eigen::Map<const Eigen::VectorXd>(gaps.data(), std::ssize(gaps));
+  const Eigen::MatrixXd own = covariance(fitted, fitted);
+  comparison.misfit = gap.dot(own.llt().solve(gap));
+  const Eigen::VectorXd freedom = freedom_of(calibration.measurements, covariance.diagonal());
+  comparison.p = misfit_p(comparison.misfit, learnt, freedom(fitted), calibration.seed);
 }
 
 double rms(const Calibration& calibration,
@@ -101,35 +114,38 @@ std::vector<std::string> conditions_of(const Calibration& calibration, const Gro
   return result;
 }
 
-/// Straight line through z over the condition (its logarithm where all are above zero).
+/// Straight line through z over the condition (its logarithm where all are above zero), by
+/// generalised least squares: what all readings of an observable share cancels in a slope.
 std::optional<ResidualTrend> trend_of(const Calibration& calibration,
+                                      const Eigen::MatrixXd& covariance,
                                       const Group& group,
                                       const std::string& setting) {
-  if (group.size() < 3) return std::nullopt;
+  std::vector<Index> places;
   std::vector<double> x, z;
-  bool positive = true;
   for (const ComparedMeasurement* row : group) {
     if (!std::isfinite(row->z)) continue;
+    places.push_back(static_cast<Index>(row->measurement));
     x.push_back(setting_of(calibration.measurements[row->measurement], setting));
     z.push_back(row->z);
-    positive = positive && x.back() > 0.0;
   }
   if (x.size() < 3) return std::nullopt;
-  double mean_x = 0.0, mean_z = 0.0;
-  const auto n = static_cast<double>(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (positive) x[i] = std::log(x[i]);
-    mean_x += x[i] / n;
-    mean_z += z[i] / n;
+  const auto [least, most] = std::ranges::minmax(x);
+  if (least == most) return std::nullopt;
+  Eigen::MatrixXd line(std::ssize(x), 2);
+  for (Index i = 0; i < line.rows(); ++i) {
+    const double value = x[static_cast<std::size_t>(i)];
+    line.row(i) << 1.0, least > 0.0 ? std::log(value) : value;
   }
-  double xx = 0.0, xz = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += (x[i] - mean_x) * (x[i] - mean_x);
-    xz += (x[i] - mean_x) * (z[i] - mean_z);
-  }
-  if (xx == 0.0) return std::nullopt;
-  // The scatter of each z is one.
-  return ResidualTrend{"", setting, xz / xx, xz / std::sqrt(xx)};
+  const Eigen::VectorXd sizes = covariance.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd own = sizes(places).cwiseInverse().asDiagonal() *
+                              covariance(places, places) *
+                              sizes(places).cwiseInverse().asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> root(own);
+  const Eigen::Matrix2d normal = line.transpose() * root.solve(line);
+  const Eigen::Matrix2d inverse = normal.inverse();
+  const auto values = Eigen::Map<const Eigen::VectorXd>(z.data(), std::ssize(z));
+  const double slope = (inverse * (line.transpose() * root.solve(values)))(1);
+  return ResidualTrend{"", setting, slope, slope / std::sqrt(inverse(1, 1))};
 }
 
 std::string spoken(std::string name) {
@@ -223,9 +239,9 @@ Comparison compare(const Calibration& calibration, const Fit& fit, const Toleran
   }
   const auto learnt = std::ranges::count_if(fit.directions, &Direction::learnt);
   const auto fitted = std::ranges::count(calibration.measurements, Role::fit, &Measurement::role);
-  comparison.misfit = joint_misfit(calibration, comparison.rows, stated);
+  const Eigen::MatrixXd covariance = joint_covariance(calibration, comparison.rows, stated);
   comparison.freedom = static_cast<double>(fitted - learnt);
-  comparison.p = chi_squared_tail(comparison.misfit, comparison.freedom);
+  weigh_together(calibration, covariance, learnt, comparison);
   comparison.fitted_z = rms(calibration, comparison.rows, Role::fit);
   comparison.held_out_z = rms(calibration, comparison.rows, Role::held_out);
   for (const std::string& name : names) {
@@ -233,7 +249,7 @@ Comparison compare(const Calibration& calibration, const Fit& fit, const Toleran
     for (const std::size_t row : groups[name]) group.push_back(&comparison.rows[row]);
     const std::vector<std::string> conditions = conditions_of(calibration, group);
     for (const std::string& condition : conditions) {
-      if (auto trend = trend_of(calibration, group, condition)) {
+      if (auto trend = trend_of(calibration, covariance, group, condition)) {
         trend->observable = name;
         comparison.trends.push_back(*std::move(trend));
       }

@@ -35,11 +35,12 @@ struct ResidualTrend {
 struct Comparison {
   std::vector<ComparedMeasurement> rows;  ///< in the order of the calibration
   std::vector<ResidualTrend> trends;
-  double misfit = 0.0;    ///< of the fitted ones, shared tolerances accounted for
-  double freedom = 0.0;   ///< fitted measurements less learnt directions
-  double p = 1.0;         ///< that a right model misses by so much; 1 where nothing is left to test
-  double fitted_z = 0.0;  ///< root mean square
-  double held_out_z = 0.0;             ///< NaN where none is held out
+  double misfit = 0.0;      ///< of the fitted ones, shared tolerances accounted for
+  double freedom = 0.0;     ///< fitted measurements less learnt directions
+  double p = 1.0;           ///< that a right model misses by so much, estimated errors accounted
+                            ///< for; 1 where nothing is left to test
+  double fitted_z = 0.0;    ///< root mean square
+  double held_out_z = 0.0;  ///< NaN where none is held out
   std::vector<std::string> sentences;  ///< where it is off, or that it fits
 };
 

@@ -1,5 +1,7 @@
 #include "calibrator/diagnosis/covariance.hpp"
 
+#include <limits>
+
 #include "calibrator/misfit.hpp"
 
 namespace repose::calibrator {
@@ -20,6 +22,19 @@ Eigen::MatrixXd covariance_of(std::span<const Measurement> measurements, const T
     covariance(i, i) = own * own + tau * tau;
   }
   return covariance;
+}
+
+Eigen::VectorXd freedom_of(std::span<const Measurement> measurements,
+                           const Eigen::VectorXd& variance) {
+  Eigen::VectorXd freedom =
+      Eigen::VectorXd::Constant(variance.size(), std::numeric_limits<double>::infinity());
+  for (Eigen::Index j = 0; j < freedom.size(); ++j) {
+    const Measurement& measurement = measurements[static_cast<std::size_t>(j)];
+    if (measurement.replicates < 2 || !(measurement.standard_error > 0.0)) continue;
+    const double share = variance(j) / (measurement.standard_error * measurement.standard_error);
+    freedom(j) = (measurement.replicates - 1.0) * share * share;
+  }
+  return freedom;
 }
 
 }  // namespace repose::calibrator

@@ -17,4 +17,15 @@ namespace repose::calibrator {
 /// Standard errors and allowances, and the shared tolerance; SI.
 Eigen::MatrixXd covariance_of(std::span<const Measurement> measurements, const Tolerances& stated);
 
+/// How far each measurement's variance is known, in degrees of freedom: of it only the standard
+/// error was estimated, and only where repetitions are stated; infinite where all of it is known.
+///
+///   nu_j = (n_j - 1) Sigma_jj^2 / s_j^4
+///
+///   n_j  repetitions     s_j  standard error     Sigma_jj  the whole variance
+///
+/// Source: Welch 1947, Biometrika 34, 28-35; Satterthwaite 1946, Biometrics Bull. 2, 110-114.
+Eigen::VectorXd freedom_of(std::span<const Measurement> measurements,
+                           const Eigen::VectorXd& variance);
+
 }  // namespace repose::calibrator

@@ -178,12 +178,6 @@ bool Inquiry::probe(Diagnosis& diagnosis) {
   return true;
 }
 
-double share_at_least(const std::vector<Screen::Draw>& null, double Screen::Draw::*what, double x) {
-  const auto count =
-      std::ranges::count_if(null, [&](const Screen::Draw& draw) { return draw.*what >= x; });
-  return static_cast<double>(count) / static_cast<double>(null.size());
-}
-
 void Inquiry::screen(Diagnosis& diagnosis) {
   std::vector<Departure> departures;
   for (const std::size_t k : screened_) {
@@ -200,7 +194,7 @@ void Inquiry::screen(Diagnosis& diagnosis) {
     excuses_.push_back(std::move(direction));
   }
   screen_.emplace(base_->fit, base_->space, departures);
-  const Vector freedom = question_.freedom(models_->fitted());
+  const Vector freedom = question_.error_freedom(models_->fitted());
   const auto null = screen_->draw_null(screened_.size(), freedom, question_.calibration.seed);
 
   double largest = 0.0, largest_excuse = 0.0;
@@ -251,7 +245,7 @@ void Inquiry::fit_excuses(Diagnosis& diagnosis) {
     excuse.size = fit.size;
     excuse.deviance = fit.deviance;
     excuse.misfit = fit.misfit;
-    excuse.misfit_p = chi_squared_tail(fit.misfit, fit.freedom);
+    excuse.misfit_p = fit.p;
   }
   std::ranges::sort(diagnosis.excuses, {}, &Excuse::deviance);
 }

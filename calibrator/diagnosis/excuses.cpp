@@ -116,7 +116,7 @@ ExcuseFit fit_excuse(const Models& models, const Model& base, const ExcuseDirect
       extend(base.fit.at, 0.0), extend(base.fit.at, 0.05), extend(base.fit.at, -0.05)};
   const ModelFit fit = fit_model(
       predictor, models.targets(), models.covariance(base.emulator, base.fit.at), space, starts);
-  return {fit.at(d), fit.deviance, fit.misfit, fit.freedom};
+  return {fit.at(d), fit.deviance, fit.misfit, models.misfit_p(fit, space)};
 }
 
 }  // namespace repose::calibrator

@@ -28,7 +28,7 @@ struct ExcuseFit {
   double size = 0.0;
   double deviance = 0.0;
   double misfit = 0.0;
-  double freedom = 0.0;
+  double p = 1.0;  ///< of the misfit
 };
 ExcuseFit fit_excuse(const Models& models, const Model& base, const ExcuseDirection& direction);
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "calibrator/diagnosis/chance.hpp"
 #include "calibrator/diagnosis/screen.hpp"
 
 namespace repose::calibrator {
@@ -86,6 +87,11 @@ ModelSpace Models::space(const Additions& on) const {
     space.precision(k) = 1.0 / strength_deviation;
   }
   return space;
+}
+
+double Models::misfit_p(const ModelFit& fit, const ModelSpace& space) const {
+  return calibrator::misfit_p(
+      fit, space, question_.error_freedom(fitted_), question_.calibration.seed);
 }
 
 Model Models::fit(const Additions& on, std::span<const Vector> starts) const {

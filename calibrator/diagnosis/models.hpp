@@ -54,6 +54,9 @@ class Models {
                                            const Eigen::VectorXd& at) const;
   [[nodiscard]] ModelSpace space(const Additions& on) const;
 
+  /// The chance of such a misfit where nothing more is missing, estimated errors accounted for.
+  [[nodiscard]] double misfit_p(const ModelFit& fit, const ModelSpace& space) const;
+
  private:
   [[nodiscard]] TrendEmulator learn(const Additions& on) const;
 

@@ -1,7 +1,6 @@
 #include "calibrator/diagnosis/question.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "calibrator/diagnosis/covariance.hpp"
 
@@ -22,8 +21,6 @@ DiagnosisQuestion question_of(const Calibration& calibration,
   for (Eigen::Index j = 0; j < count; ++j) {
     const Measurement& measurement = calibration.measurements[static_cast<std::size_t>(j)];
     question.sizes(j) = size_of(measurement);
-    question.freedom(j) = measurement.replicates > 1 ? measurement.replicates - 1.0
-                                                     : std::numeric_limits<double>::infinity();
     if (static_cast<std::size_t>(j) < fit.offset.size()) {
       question.offset(j) = fit.offset[static_cast<std::size_t>(j)];
     }
@@ -31,6 +28,7 @@ DiagnosisQuestion question_of(const Calibration& calibration,
       question.covariance(j, j) += std::pow(fit.offset_error[static_cast<std::size_t>(j)], 2);
     }
   }
+  question.error_freedom = freedom_of(calibration.measurements, question.covariance.diagonal());
   return question;
 }
 

@@ -17,10 +17,10 @@ struct DiagnosisQuestion {
   const Calibration& calibration;  ///< outlives the question, as the fit does
   const Fit& fit;
   std::vector<Suspect> suspects;
-  Eigen::MatrixXd covariance;  ///< of all measurements, SI: standard errors and tolerances
-  Eigen::VectorXd sizes;       ///< SI: what 100 % of each measurement is
-  Eigen::VectorXd freedom;     ///< of each standard error; infinite where it is known
-  Eigen::VectorXd offset;      ///< SI: what the laboratory's apparatus adds to the runs'
+  Eigen::MatrixXd covariance;     ///< of all measurements, SI: standard errors and tolerances
+  Eigen::VectorXd sizes;          ///< SI: what 100 % of each measurement is
+  Eigen::VectorXd error_freedom;  ///< of each one's variance; infinite where it is known
+  Eigen::VectorXd offset;         ///< SI: what the laboratory's apparatus adds to the runs'
   std::vector<Candidate> candidates = {};  ///< that could be measured next
 };
 

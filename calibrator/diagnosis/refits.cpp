@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "calibrator/design.hpp"
-#include "calibrator/diagnosis/chi_squared.hpp"
 #include "calibrator/misfit.hpp"
 
 namespace repose::calibrator {
@@ -37,9 +36,10 @@ Points spread(const ModelSpace& space,
     for (std::size_t k = 0; k < all; ++k) {
       const auto i = static_cast<Index>(k);
       const bool strength = k >= dimensions;
-      // Strengths beyond 1 are allowed, but not looked for.
+      // Strengths beyond 1, to either side, are allowed, but not looked for.
+      const double lower = strength ? std::max(space.lower(i), -1.0) : space.lower(i);
       const double upper = strength ? 1.0 : space.upper(i);
-      double x = space.lower(i) + u[k] * (upper - space.lower(i));
+      double x = lower + u[k] * (upper - lower);
       if (about) {
         const double radius = strength ? about->share * 5.0 / 3.0 : about->share;
         x = std::clamp(
@@ -100,7 +100,7 @@ Refit summary_of(const DiagnosisQuestion& question,
   refit.gain = base.deviance - model.fit.deviance;
   refit.misfit = model.fit.misfit;
   refit.freedom = model.fit.freedom;
-  refit.p = chi_squared_tail(refit.misfit, refit.freedom);
+  refit.p = models.misfit_p(model.fit, model.space);
   refit.at_bound = model.fit.inside.size() < static_cast<std::size_t>(model.fit.at.size());
   refit.fitted_z = rms_z(question, refit.predicted, Role::fit);
   refit.held_out_z = rms_z(question, refit.predicted, Role::held_out);

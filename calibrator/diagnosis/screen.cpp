@@ -4,8 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/QR>
-
+#include "calibrator/diagnosis/chance.hpp"
 #include "engine/random.hpp"
 
 namespace repose::calibrator {
@@ -14,20 +13,6 @@ namespace {
 using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
-
-/// Off the columns of the tangent space, the prior's rows below the data's.
-Matrix projector_off(const ModelFit& base, const ModelSpace& space) {
-  const Index data = base.jacobian.rows();
-  const auto inside = static_cast<Index>(base.inside.size());
-  Matrix tangent = Matrix::Zero(data + inside, inside);
-  tangent.topRows(data) = base.jacobian(Eigen::all, base.inside);
-  tangent.bottomRows(inside).diagonal() = space.precision(base.inside);
-  Matrix projector = Matrix::Identity(data + inside, data + inside);
-  if (inside == 0) return projector;
-  const Matrix q = Eigen::HouseholderQR<Matrix>(tangent).householderQ() *
-                   Matrix::Identity(data + inside, inside);
-  return projector - q * q.transpose();
-}
 
 Vector residuals_of(const ModelFit& base, const ModelSpace& space) {
   const Vector pull = space.precision.cwiseProduct(space.centre - base.at);
@@ -44,19 +29,6 @@ Score score_of(double slope, double information, bool two_sided) {
   score.strength = std::clamp(slope / score.information, lower, largest_strength);
   score.value = std::max(0.0, (2.0 * slope - score.strength * score.information) * score.strength);
   return score;
-}
-
-/// A Student's t with that many degrees of freedom; beyond a hundred a normal.
-double draw_t(engine::Random& random, double freedom) {
-  const double normal = random.normal();
-  if (!(freedom < 100.0)) return normal;
-  double sum = 0.0;
-  const int whole = std::max(1, static_cast<int>(std::lround(freedom)));
-  for (int i = 0; i < whole; ++i) {
-    const double x = random.normal();
-    sum += x * x;
-  }
-  return normal / std::sqrt(sum / whole);
 }
 
 }  // namespace
@@ -101,6 +73,12 @@ bool Screen::same_trace(std::size_t a, std::size_t b) const {
   return (mirrored ? std::abs(similarity) : similarity) > alike;
 }
 
+double share_at_least(std::span<const Screen::Draw> null, double Screen::Draw::*what, double x) {
+  const auto count =
+      std::ranges::count_if(null, [&](const Screen::Draw& draw) { return draw.*what >= x; });
+  return static_cast<double>(count) / static_cast<double>(null.size());
+}
+
 double Screen::pair_gain(std::size_t a, std::size_t b) const {
   const auto i = static_cast<Index>(a), j = static_cast<Index>(b);
   const double aa = products_(i, i), bb = products_(j, j), ab = products_(i, j);
@@ -121,19 +99,16 @@ std::vector<Screen::Draw> Screen::draw_null(std::size_t named,
   const Index data = freedom.size();
   std::vector<Draw> result;
   result.reserve(static_cast<std::size_t>(draws));
-  Vector noise(projector_.rows());
   for (int d = 0; d < draws; ++d) {
     engine::Random random(seed, engine::Purpose::diagnosis_null, static_cast<std::uint64_t>(d));
-    for (Index i = 0; i < noise.size(); ++i) {
-      noise(i) = i < data ? draw_t(random, freedom(i)) : random.normal();
-    }
+    const Vector noise = draw_errors(random, freedom, projector_.rows());
     const Vector slopes = projected_ * noise;
     Draw draw;
     for (std::size_t k = 0; k < departures_.size(); ++k) {
-      const double u = slopes(static_cast<Index>(k));
-      if (u < 0.0 && !departures_[k].two_sided) continue;
       double& largest = k < named ? draw.named : draw.unnamed;
-      largest = std::max(largest, u * u / scores_[k].information);
+      const Score score =
+          score_of(slopes(static_cast<Index>(k)), scores_[k].information, departures_[k].two_sided);
+      largest = std::max(largest, score.value);
     }
     draw.misfit = (projector_ * noise).head(data).squaredNorm();
     result.push_back(draw);

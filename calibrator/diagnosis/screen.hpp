@@ -28,11 +28,9 @@
 #include <Eigen/Core>
 
 #include "calibrator/diagnosis/model_fit.hpp"
+#include "calibrator/diagnosis/suspect.hpp"
 
 namespace repose::calibrator {
-
-/// Beyond it a strength is no longer plausible.
-inline constexpr double largest_strength = 1.3;
 
 /// Similarity beyond which two traces are one.
 inline constexpr double alike = 0.95;
@@ -100,5 +98,8 @@ class Screen {
   std::vector<Score> scores_;
   Eigen::MatrixXd similarity_;
 };
+
+/// Share of the draws in which that is at least x.
+double share_at_least(std::span<const Screen::Draw> null, double Screen::Draw::*what, double x);
 
 }  // namespace repose::calibrator

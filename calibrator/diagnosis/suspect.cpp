@@ -17,8 +17,6 @@ using engine::MaterialId;
 using engine::ParameterKey;
 using engine::ParameterSet;
 
-constexpr double most_strength = 1.3;  // beyond it an effect is no longer plausible
-
 std::string_view owner_of(const ParameterKey& key) {
   return std::string_view(key.field).substr(0, key.field.find('.'));
 }
@@ -138,7 +136,7 @@ void extend(const Suspect& suspect, const ParameterSet& best, Calibration& calib
     const engine::ParameterInfo* info = engine::find_parameter(lever.key.field);
     const engine::Unit unit = info != nullptr ? info->field->unit : engine::Unit{};
     const double none = lever.relative ? lever.value(best, -1.0) : lever.null_value;
-    const double most = lever.value(best, lever.whole ? 1.0 : most_strength);
+    const double most = lever.value(best, lever.whole ? 1.0 : largest_strength);
     // What no strength moves belongs to the effect, but not to the search.
     if (none == most) {
       calibration.fixed.set(lever.key, none);

@@ -15,6 +15,9 @@
 
 namespace repose::calibrator {
 
+/// Beyond it a strength is no longer plausible.
+inline constexpr double largest_strength = 1.3;
+
 /// Friction of the walls that differs from the grains': a suspect, though no effect of its own.
 inline constexpr std::string_view own_wall_friction = "wall_friction";
 

@@ -16,7 +16,7 @@ struct Drop {
 };
 
 /// Drops with a standard error of 0.01, and a fit that learnt one direction.
-Comparison compared(const std::vector<Drop>& drops) {
+Comparison compared(const std::vector<Drop>& drops, double tolerance = 0.0, int replicates = 0) {
   Calibration calibration;
   Fit fit;
   fit.directions.push_back({{1.0}, 0.1, true});
@@ -26,6 +26,7 @@ Comparison compared(const std::vector<Drop>& drops) {
     measurement.observable = "restitution";
     measurement.value = drop.measured;
     measurement.standard_error = 0.01;
+    measurement.replicates = replicates;
     measurement.role = drop.role;
     calibration.measurements.push_back(measurement);
     Prediction prediction;
@@ -33,7 +34,7 @@ Comparison compared(const std::vector<Drop>& drops) {
     prediction.predicted = drop.predicted;
     fit.predictions.push_back(prediction);
   }
-  return compare(calibration, fit, {{"drop.restitution", 0.0}});
+  return compare(calibration, fit, {{"drop.restitution", tolerance}});
 }
 
 bool says(const Comparison& comparison, const std::string& words) {
@@ -67,13 +68,28 @@ TEST_CASE("a model that fits is told to fit", "[calibrator]") {
 }
 
 TEST_CASE("many small misses are no fit", "[calibrator]") {
-  const Comparison comparison = compared({{0.05, 0.718, 0.70},
-                                          {0.1, 0.718, 0.70},
-                                          {0.2, 0.682, 0.70},
-                                          {0.4, 0.682, 0.70},
-                                          {0.8, 0.718, 0.70}});
+  const std::vector<Drop> drops{{0.05, 0.718, 0.70},
+                                {0.1, 0.718, 0.70},
+                                {0.2, 0.682, 0.70},
+                                {0.4, 0.682, 0.70},
+                                {0.8, 0.718, 0.70}};
+  const Comparison comparison = compared(drops);
   REQUIRE(comparison.sentences.size() == 1);
   CHECK(says(comparison, "does not fit"));
+  // Errors from three repetitions are too small as often as not.
+  const Comparison uncertain = compared(drops, 0.0, 3);
+  CHECK(uncertain.misfit == Approx(comparison.misfit));
+  CHECK(uncertain.p > 0.05);
+  CHECK_FALSE(says(uncertain, "does not fit"));
+}
+
+TEST_CASE("a tolerance that readings share hides no trend between them", "[calibrator]") {
+  const Comparison comparison =
+      compared({{0.05, 0.70, 0.68}, {0.1, 0.70, 0.69}, {0.2, 0.70, 0.71}, {0.4, 0.70, 0.72}}, 0.05);
+  REQUIRE(comparison.trends.size() == 1);
+  // By hand: what is not shared is the standard error and a quarter of the tolerance's square.
+  const double own = std::sqrt(0.01 * 0.01 + 0.25 * std::pow(0.05 * 0.70, 2));
+  CHECK(comparison.trends[0].z == Approx(0.07 / std::sqrt(5.0) / own).epsilon(1e-6));
 }
 
 TEST_CASE("as many parameters as measurements say nothing", "[calibrator]") {

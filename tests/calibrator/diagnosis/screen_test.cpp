@@ -9,6 +9,7 @@
 
 #include "calibrator/diagnosis/chi_squared.hpp"
 #include "calibrator/diagnosis/verdict.hpp"
+#include "engine/random.hpp"
 
 using namespace repose::calibrator;
 using Eigen::MatrixXd;
@@ -138,6 +139,38 @@ TEST_CASE("the joint null exceeds the largest score as often as it says", "[cali
   const auto wider = std::ranges::count_if(
       estimated, [](const Screen::Draw& draw) { return draw.misfit >= 11.0705; });
   CHECK(wider > 3 * above);  // what is estimated from five repetitions is no proof
+}
+
+TEST_CASE("the joint null is that of the scores, weak departures held to their limits included",
+          "[calibrator]") {
+  constexpr std::size_t named = 7;
+  const MatrixXd slopes = MatrixXd::Ones(12, 1);
+  std::vector<Departure> departures{{2.0 * VectorXd::Unit(12, 0), false}};
+  constexpr double weak = 0.2;  // its strength would often be far beyond its limit
+  for (int k = 1; k < 7; ++k) departures.push_back({weak * VectorXd::Unit(12, k), false});
+  for (int k = 7; k < 9; ++k) departures.push_back({2.0 * VectorXd::Unit(12, k), true});
+  const VectorXd known = VectorXd::Constant(12, std::numeric_limits<double>::infinity());
+  const Fitted base = fitted(slopes, VectorXd::Zero(12));
+  const auto null = Screen(base.fit, base.space, departures).draw_null(named, known, 1, 20000);
+
+  constexpr int studies = 1000;
+  int low_named = 0, low_unnamed = 0;
+  for (std::uint64_t seed = 1; seed <= studies; ++seed) {
+    repose::engine::Random random(seed, repose::engine::Purpose::trial);
+    VectorXd y(12);
+    for (double& value : y) value = random.normal();
+    const Fitted model = fitted(slopes, y);
+    const Screen screen(model.fit, model.space, departures);
+    double largest = 0.0, largest_unnamed = 0.0;
+    for (std::size_t k = 0; k < departures.size(); ++k) {
+      double& own = k < named ? largest : largest_unnamed;
+      own = std::max(own, screen.scores()[k].value);
+    }
+    low_named += share_at_least(null, &Screen::Draw::named, largest) < 0.05 ? 1 : 0;
+    low_unnamed += share_at_least(null, &Screen::Draw::unnamed, largest_unnamed) < 0.05 ? 1 : 0;
+  }
+  CHECK(low_named == Approx(0.05 * studies).margin(21));  // three standard deviations
+  CHECK(low_unnamed == Approx(0.05 * studies).margin(21));
 }
 
 TEST_CASE("the chi-squared tail meets its table", "[calibrator]") {
