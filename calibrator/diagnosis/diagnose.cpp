@@ -69,7 +69,7 @@ class Inquiry {
   bool refit(const std::vector<Additions>& candidates, int most, Diagnosis& diagnosis);
   bool refit_best(Diagnosis& diagnosis);
   bool refit_pairs(Diagnosis& diagnosis);
-  bool settle(Diagnosis& diagnosis);
+  bool advise(Diagnosis& diagnosis);
 
   DiagnosisQuestion question_;
   const Evaluator& evaluator_;
@@ -283,7 +283,7 @@ bool Inquiry::refit_pairs(Diagnosis& diagnosis) {
 }
 
 /// Explanations that are still open, and what would settle them.
-bool Inquiry::settle(Diagnosis& diagnosis) {
+bool Inquiry::advise(Diagnosis& diagnosis) {
   if (question_.candidates.empty()) return true;
   std::vector<Rival> rivals;
   const auto add = [&](const Model& model, double weight) {
@@ -326,8 +326,10 @@ std::optional<Diagnosis> Inquiry::run() {
     if (wants_pairs(diagnosis) && !refit_pairs(diagnosis)) return std::nullopt;
   }
   find_families(*screen_, screened_, diagnosis);
-  conclude(question_.calibration, diagnosis);
-  if (!settle(diagnosis)) return std::nullopt;
+  conclude(question_.calibration,
+           refitted_.empty() ? "" : sole_witness(question_, *models_, refitted_.front()),
+           diagnosis);
+  if (!advise(diagnosis)) return std::nullopt;
   diagnosis.evaluations += runs_.spent();
   return diagnosis;
 }

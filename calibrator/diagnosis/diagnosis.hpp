@@ -23,7 +23,7 @@ enum class DiagnosisVerdict : std::uint8_t {
   pair,          ///< two effects are missing
   outside,       ///< something the catalogue lacks, located at one apparatus
   unexplained,   ///< something is missing that neither the catalogue nor one apparatus explains
-  not_testable,  ///< the free parameters can follow these data whatever is missing
+  not_testable,  ///< whatever is missing would not show in these data
 };
 
 inline constexpr std::array<std::string_view, 7> diagnosis_verdict_names{
@@ -33,7 +33,7 @@ inline constexpr std::array<std::string_view, 7> diagnosis_verdict_names{
 enum class Grade : std::uint8_t {
   none,
   a,  ///< several apparatus agree, and no excuse of a single one does as well
-  b,  ///< an error of one apparatus would explain as much
+  b,  ///< one apparatus alone asks for it, or an error of one would explain as much
   c,  ///< an error of one apparatus explains more
   d,  ///< nothing explains the data
 };

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "calibrator/diagnosis/screen.hpp"
 #include "calibrator/diagnosis/tolerance.hpp"
 #include "engine/catalogue.hpp"
 
@@ -52,6 +53,42 @@ std::vector<double> trend_of(const std::vector<std::map<std::string, double>>& s
   if (farthest < 1e-9) return {};
   for (double& value : values) value /= farthest;
   return values;
+}
+
+/// Whether some of the fitted readings ask for the model's addition: by what it gains there beyond
+/// chance (one-sided, 5 %), everything else free.
+bool ask_for(const DiagnosisQuestion& question,
+             const Models& models,
+             const Model& model,
+             Index addition,
+             const std::vector<Index>& readings) {
+  if (readings.empty()) return false;
+  const Predictor own = models.predictor(model.emulator);
+  const Predictor predictor{
+      [&](const Vector& x) -> Vector { return own.mean(x)(readings); },
+      [&](const Vector& x) -> Eigen::MatrixXd { return own.jacobian(x)(readings, Eigen::all); }};
+  const Vector targets = models.targets()(readings);
+  const Eigen::MatrixXd covariance =
+      models.covariance(model.emulator, model.fit.at)(readings, readings);
+  const auto fitted_in = [&](const ModelSpace& space) {
+    return fit_model(predictor, targets, covariance, space, std::vector<Vector>{model.fit.at});
+  };
+  ModelSpace without = model.space;
+  without.lower(addition) = without.upper(addition) = 0.0;
+  without.precision(addition) = 0.0;
+  const ModelFit with_it = fitted_in(model.space), base = fitted_in(without);
+  const double gain = base.objective - with_it.objective;
+  if (!(gain > 0.0)) return false;
+  Vector bare = with_it.at;
+  bare(addition) = 0.0;
+  const std::vector<Departure> departure{
+      {(predictor.mean(with_it.at) - predictor.mean(bare)) / with_it.at(addition),
+       model.space.lower(addition) < 0.0}};
+  const Vector freedom = question.error_freedom(models.fitted());
+  const auto null =
+      Screen(base, without, departure).draw_null(1, freedom(readings), question.calibration.seed);
+  constexpr double significant = 0.05;
+  return share_at_least(null, &Screen::Draw::named, gain) < significant;
 }
 
 }  // namespace
@@ -117,6 +154,29 @@ ExcuseFit fit_excuse(const Models& models, const Model& base, const ExcuseDirect
   const ModelFit fit = fit_model(
       predictor, models.targets(), models.covariance(base.emulator, base.fit.at), space, starts);
   return {fit.at(d), fit.deviance, fit.misfit, models.misfit_p(fit, space)};
+}
+
+std::string sole_witness(const DiagnosisQuestion& question,
+                         const Models& models,
+                         const Model& model) {
+  std::map<std::string, std::vector<Index>> others;  // by apparatus, the readings of the rest
+  const auto apparatus_of = [&](std::size_t row) -> const std::string& {
+    const auto j = static_cast<std::size_t>(models.fitted()[row]);
+    return question.calibration.measurements[j].experiment.name;
+  };
+  for (std::size_t i = 0; i < models.fitted().size(); ++i) others[apparatus_of(i)];
+  for (std::size_t i = 0; i < models.fitted().size(); ++i) {
+    for (auto& [apparatus, readings] : others) {
+      if (apparatus != apparatus_of(i)) readings.push_back(static_cast<Index>(i));
+    }
+  }
+  const auto first = model.fit.at.size() - static_cast<Index>(model.on.size());
+  for (const auto& [apparatus, readings] : others) {
+    for (Index addition = first; addition < model.fit.at.size(); ++addition) {
+      if (!ask_for(question, models, model, addition, readings)) return apparatus;
+    }
+  }
+  return {};
 }
 
 }  // namespace repose::calibrator

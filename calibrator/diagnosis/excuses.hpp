@@ -32,4 +32,11 @@ struct ExcuseFit {
 };
 ExcuseFit fit_excuse(const Models& models, const Model& base, const ExcuseDirection& direction);
 
+/// The one apparatus without whose readings the others would not ask for the model's additions;
+/// empty: there is none. What is right about it alone may be anything, so this is every excuse that
+/// an apparatus could have, offsets of each of its readings.
+std::string sole_witness(const DiagnosisQuestion& question,
+                         const Models& models,
+                         const Model& model);
+
 }  // namespace repose::calibrator

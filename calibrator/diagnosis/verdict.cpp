@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <unsupported/Eigen/SpecialFunctions>
 
-#include "calibrator/diagnosis/chi_squared.hpp"
+#include "calibrator/phrase.hpp"
 
 namespace repose::calibrator {
 namespace {
@@ -42,7 +42,7 @@ std::string describe(const Excuse& excuse) {
 }
 
 /// The winner and every other single effect that the data cannot tell from it.
-std::vector<std::size_t> rivals(const Diagnosis& diagnosis) {
+std::vector<std::size_t> not_told_apart(const Diagnosis& diagnosis) {
   const Refit& best = diagnosis.refits.front();
   std::vector<std::size_t> names = best.effects;
   if (names.size() > 1) return names;
@@ -76,14 +76,22 @@ void conclude_adequate(Diagnosis& diagnosis) {
     if (finding.status == EffectStatus::supported) continue;
     open += (open.empty() ? "" : ", ") + finding.suspect.name;
   }
-  const bool nothing = testable == 0 || diagnosis.freedom < 0.5;
-  diagnosis.verdict = nothing ? DiagnosisVerdict::not_testable : DiagnosisVerdict::adequate;
-  if (nothing) {
+  constexpr double least_freedom = 0.5;
+  if (diagnosis.freedom < least_freedom) {
+    diagnosis.verdict = DiagnosisVerdict::not_testable;
     diagnosis.sentence =
         "These data cannot tell whether anything is missing: the free parameters can follow them "
         "whatever they say. More kinds of measurement are needed than there are directions learnt.";
     return;
   }
+  if (testable == 0) {
+    diagnosis.verdict = DiagnosisVerdict::not_testable;
+    diagnosis.sentence = "The model fits these data (p " + number(diagnosis.p_misfit, 2) +
+                         "), but they cannot tell whether anything is missing: none of the effects "
+                         "would show in them, however strong.";
+    return;
+  }
+  diagnosis.verdict = DiagnosisVerdict::adequate;
   diagnosis.sentence =
       "The model is adequate within the stated tolerance: nothing is missing that "
       "these data would show.";
@@ -124,10 +132,14 @@ void conclude_unexplained(Diagnosis& diagnosis) {
   }
 }
 
-void conclude_named(Diagnosis& diagnosis, const Excuse* excuse, double margin) {
+void conclude_named(Diagnosis& diagnosis,
+                    const Excuse* excuse,
+                    double margin,
+                    const std::string& sole_witness) {
   const Refit& best = diagnosis.refits.front();
-  diagnosis.grade = margin > close_deviances ? Grade::a : Grade::b;
-  const std::vector<std::size_t> names = rivals(diagnosis);
+  const bool excused = margin <= close_deviances && excuse != nullptr;
+  diagnosis.grade = excused || !sole_witness.empty() ? Grade::b : Grade::a;
+  const std::vector<std::size_t> names = not_told_apart(diagnosis);
   retract(diagnosis, names);
   if (best.effects.size() > 1) {
     diagnosis.verdict = DiagnosisVerdict::pair;
@@ -141,9 +153,12 @@ void conclude_named(Diagnosis& diagnosis, const Excuse* excuse, double margin) {
     diagnosis.verdict = DiagnosisVerdict::named;
     diagnosis.sentence = titles(diagnosis, names, "") + " is missing.";
   }
-  if (margin <= close_deviances && excuse != nullptr) {
+  if (excused) {
     diagnosis.sentence +=
         " An error of one apparatus would explain the data as well: " + describe(*excuse) + ".";
+  } else if (!sole_witness.empty()) {
+    diagnosis.sentence += " The readings of one apparatus alone ask for it (" + sole_witness +
+                          "): measure it with another.";
   }
 }
 
@@ -195,7 +210,9 @@ void find_families(const Screen& screen,
   }
 }
 
-void conclude(const Calibration& calibration, Diagnosis& diagnosis) {
+void conclude(const Calibration& calibration,
+              const std::string& sole_witness,
+              Diagnosis& diagnosis) {
   for (const EffectFinding& finding : diagnosis.effects) {
     if (!finding.suspect.objection.empty()) {
       diagnosis.remarks.push_back(finding.suspect.name + ": " + finding.suspect.objection + ".");
@@ -229,7 +246,7 @@ void conclude(const Calibration& calibration, Diagnosis& diagnosis) {
     return excuse != nullptr && excuse->misfit_p >= fits ? conclude_outside(diagnosis, *excuse)
                                                          : conclude_unexplained(diagnosis);
   }
-  conclude_named(diagnosis, excuse, margin);
+  conclude_named(diagnosis, excuse, margin, sole_witness);
 }
 
 }  // namespace repose::calibrator

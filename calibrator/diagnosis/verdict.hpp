@@ -1,13 +1,15 @@
 /// The rules by which a diagnosis decides, and its sentence.
 ///
 ///   adequate     p_named >= 0.03, p_unnamed >= 0.015 and p_misfit >= 0.005: 5 % in all
-///   A, B, C, D   margin M = deviance of the best excuse - of the best refit: A above 6, B within,
-///                C below -6 where the excuse fits better; D where no misfit has p >= 0.02
+///   A, B, C, D   margin M = deviance of the best excuse - of the best refit: A above 6 where more
+///                than one apparatus asks for the effects, B within or where one does, C below -6
+///                where the excuse fits better; D where no misfit has p >= 0.02
 ///   plausible    refits whose deviance is within 6 of the best
 ///
 /// Source: the error rates of these numbers on a stand-in, tests/calibrator/diagnosis.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "calibrator/calibration.hpp"
@@ -33,7 +35,10 @@ void find_families(const Screen& screen,
                    const std::vector<std::size_t>& screened,
                    Diagnosis& diagnosis);
 
-/// Verdict, grade, plausible set and sentence, from all that was found.
-void conclude(const Calibration& calibration, Diagnosis& diagnosis);
+/// Verdict, grade, plausible set and sentence, from all that was found. `sole_witness`: the one
+/// apparatus that asks for the best refit's effects; empty: others do, too.
+void conclude(const Calibration& calibration,
+              const std::string& sole_witness,
+              Diagnosis& diagnosis);
 
 }  // namespace repose::calibrator

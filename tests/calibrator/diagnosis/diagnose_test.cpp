@@ -64,6 +64,16 @@ TEST_CASE("effects with one trace are reported as a family", "[calibrator]") {
   CHECK(diagnosis.sentence.find("jkr") != std::string::npos);
 }
 
+TEST_CASE("a name is sure only where more than one apparatus asks for it", "[calibrator]") {
+  const Diagnosis several = stand_in::diagnose(stand_in::make_problem(2, {{"capillary", 0.9}}));
+  REQUIRE(named(several) == "capillary");
+  CHECK(several.grade == calibrator::Grade::a);
+  const Diagnosis one = stand_in::diagnose(stand_in::make_problem(21, {{"hysteresis", 0.9}}));
+  REQUIRE(named(one) == "hysteresis");
+  CHECK(one.grade == calibrator::Grade::b);
+  CHECK(one.sentence.find("one apparatus alone") != std::string::npos);
+}
+
 TEST_CASE("a stopped diagnosis has no answer", "[calibrator]") {
   const auto problem = stand_in::make_problem(1, {});
   std::stop_source stop;
