@@ -106,33 +106,41 @@ bool Inquiry::learn_offset() {
   return !stop_.stop_requested();
 }
 
-/// The calibrated model's most probable set, with enough runs around it for its slopes.
+/// The calibrated model's most probable set, with enough runs around it for its slopes. A
+/// calibration that started from an earlier answer may have a few runs at one point only: then it
+/// is looked for around the calibration's best.
 bool Inquiry::anchor(Diagnosis& diagnosis) {
   models_.emplace(question_, runs_);
-  std::vector<Vector> starts{vector_of(runs_.space().coordinates(question_.fit.best)),
-                             Vector::Constant(static_cast<Index>(dimensions_), 0.5)};
+  const Vector best = vector_of(runs_.space().coordinates(question_.fit.best));
+  std::vector<Vector> starts{best, Vector::Constant(static_cast<Index>(dimensions_), 0.5)};
   for (const UnitPoint& u :
        latin_hypercube(4, dimensions_, question_.calibration.seed, anchor_design)) {
     starts.push_back(vector_of(u));
   }
-  base_.emplace(models_->fit({}, starts));
+  const auto asked =
+      std::ranges::count(question_.calibration.measurements, Role::fit, &Measurement::role);
+  const bool learnt = std::cmp_equal(models_->fitted().size(), asked);
+  if (learnt) base_.emplace(models_->fit({}, starts));
+  const Vector centre = learnt ? base_->fit.at : best;
   constexpr double near = 0.22, radius = 0.16;
   const auto close = std::ranges::count_if(runs_.all(), [&](const SuiteRun& run) {
     return run.strengths.empty() &&
-           (dimensions_ == 0 || (vector_of(run.at) - base_->fit.at).cwiseAbs().maxCoeff() <= near);
+           (dimensions_ == 0 || (vector_of(run.at) - centre).cwiseAbs().maxCoeff() <= near);
   });
-  const int wanted = 6 * static_cast<int>(dimensions_) - static_cast<int>(close);
+  constexpr int least = 3;  // for their scatter, where there are no slopes
+  const int wanted = std::max(6 * static_cast<int>(dimensions_), least) - static_cast<int>(close);
   if (wanted > 0) {
     const Points points = spread(models_->space({}),
                                  {},
                                  wanted,
                                  question_.calibration.seed,
                                  anchor_design + 1,
-                                 Neighbourhood{base_->fit.at, radius});
+                                 Neighbourhood{centre, radius});
     if (!ask("anchor", points)) return false;
-    starts.assign({base_->fit.at});
-    base_.emplace(models_->fit({}, starts));
+    models_.emplace(question_, runs_);
+    if (learnt) starts.assign({centre});
   }
+  if (wanted > 0 || !learnt) base_.emplace(models_->fit({}, starts));
   probed_ = base_->fit.at;
   diagnosis.effects.clear();
   for (const Suspect& suspect : question_.suspects) diagnosis.effects.push_back({suspect});
@@ -314,7 +322,13 @@ bool Inquiry::advise(Diagnosis& diagnosis) {
 
 std::optional<Diagnosis> Inquiry::run() {
   Diagnosis diagnosis;
-  if (!learn_offset() || !anchor(diagnosis) || !probe(diagnosis)) return std::nullopt;
+  if (!learn_offset() || !anchor(diagnosis)) return std::nullopt;
+  if (models_->fitted().empty()) {
+    refuse(diagnosis);
+    diagnosis.evaluations = runs_.spent();
+    return diagnosis;
+  }
+  if (!probe(diagnosis)) return std::nullopt;
   diagnosis.parameters = runs_.space().at(unit_point(base_->fit.at, dimensions_));
   diagnosis.predicted = predictions_of(question_, *base_);
   diagnosis.fitted_z = rms_z(question_, diagnosis.predicted, Role::fit);

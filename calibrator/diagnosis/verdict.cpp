@@ -164,6 +164,13 @@ void conclude_named(Diagnosis& diagnosis,
 
 }  // namespace
 
+void refuse(Diagnosis& diagnosis) {
+  diagnosis.verdict = DiagnosisVerdict::not_testable;
+  diagnosis.sentence =
+      "Nothing can be said of what is missing: too few runs of the calibrated model gave any of "
+      "the fitted measurements.";
+}
+
 bool adequate(const Diagnosis& diagnosis) {
   return diagnosis.p_named >= alpha_named && diagnosis.p_unnamed >= alpha_unnamed &&
          diagnosis.p_misfit >= alpha_misfit;

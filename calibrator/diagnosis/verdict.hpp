@@ -21,6 +21,9 @@ namespace repose::calibrator {
 /// Of two deviances that the data cannot tell apart.
 inline constexpr double close_deviances = 6.0;
 
+/// Where no fitted measurement was observed often enough to learn from.
+void refuse(Diagnosis& diagnosis);
+
 bool adequate(const Diagnosis& diagnosis);
 
 /// Whether no single effect fits, nor an excuse.

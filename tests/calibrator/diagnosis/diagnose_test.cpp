@@ -1,7 +1,10 @@
 #include "calibrator/diagnosis/diagnose.hpp"
 
 #include <algorithm>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -72,6 +75,42 @@ TEST_CASE("a name is sure only where more than one apparatus asks for it", "[cal
   REQUIRE(named(one) == "hysteresis");
   CHECK(one.grade == calibrator::Grade::b);
   CHECK(one.sentence.find("one apparatus alone") != std::string::npos);
+}
+
+TEST_CASE("a calibration of a few runs at one point is diagnosed as any other", "[calibrator]") {
+  auto problem = stand_in::make_problem(7, {{"hysteresis", 0.8}});
+  const calibrator::Suite suite(problem.calibration.measurements);
+  problem.fit.history.clear();
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    std::vector<engine::Trial> trials;
+    suite.append_trials(problem.fit.best, {}, seed, trials);
+    calibrator::HistoryPoint point;
+    point.stage = "confirm";
+    point.parameters = problem.fit.best;
+    point.values = suite.read(stand_in::evaluator(problem)(trials));
+    problem.fit.history.push_back(std::move(point));
+  }
+  const Diagnosis diagnosis = stand_in::diagnose(problem);
+  CHECK(diagnosis.freedom > 20.0);  // of twenty-six readings
+  CHECK(diagnosis.fitted_z < 5.0);
+  CHECK(named(diagnosis) == "hysteresis");
+}
+
+TEST_CASE("where no run gives a measurement nothing is said of the model", "[calibrator]") {
+  auto problem = stand_in::make_problem(3, {});
+  problem.fit.history.clear();
+  const auto silent = [](std::span<const engine::Trial> trials) {
+    std::vector<engine::Evaluation> evaluations;
+    for (const engine::Trial& trial : trials) {
+      evaluations.push_back({trial, std::vector<engine::Observation>{}, {}});
+    }
+    return evaluations;
+  };
+  const auto diagnosis = calibrator::diagnose(stand_in::question_of(problem), silent);
+  REQUIRE(diagnosis.has_value());
+  CHECK(diagnosis->verdict == DiagnosisVerdict::not_testable);
+  CHECK(diagnosis->sentence.find("Nothing can be said") != std::string::npos);
+  CHECK(diagnosis->evaluations == 30);  // and no probe was paid for
 }
 
 TEST_CASE("a stopped diagnosis has no answer", "[calibrator]") {
