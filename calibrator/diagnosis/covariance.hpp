@@ -14,6 +14,9 @@
 
 namespace repose::calibrator {
 
+/// Share of the square of a tolerance that readings of one observable have in common.
+inline constexpr double shared_tolerance = 0.75;
+
 /// Standard errors and allowances, and the shared tolerance; SI.
 Eigen::MatrixXd covariance_of(std::span<const Measurement> measurements, const Tolerances& stated);
 

@@ -18,6 +18,7 @@
 
 #include "calibrator/calibration.hpp"
 #include "calibrator/design.hpp"
+#include "calibrator/diagnosis/covariance.hpp"
 #include "calibrator/diagnosis/diagnose.hpp"
 #include "calibrator/diagnosis/question.hpp"
 #include "calibrator/diagnosis/screen.hpp"
@@ -181,7 +182,8 @@ inline Problem make_problem(std::uint64_t seed,
     for (Eigen::Index j = 0; j < n; ++j) {
       const std::string& a = readings[static_cast<std::size_t>(i)].observable;
       if (a != readings[static_cast<std::size_t>(j)].observable) continue;
-      problem.covariance(i, j) += settings.tolerance * settings.tolerance * (i == j ? 1.0 : 0.95);
+      problem.covariance(i, j) +=
+          settings.tolerance * settings.tolerance * (i == j ? 1.0 : calibrator::shared_tolerance);
     }
   }
   for (const std::string_view effect : effects) {
