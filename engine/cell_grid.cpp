@@ -23,6 +23,16 @@ double folded(double x, double period) {
 
 }  // namespace
 
+namespace {
+
+/// A whole number within [least, most]; what is no number counts as the least.
+int whole_within(double value, double least, double most) {
+  if (!(value > least)) return static_cast<int>(least);
+  return static_cast<int>(std::min(value, most));
+}
+
+}  // namespace
+
 void CellGrid::lay_out(const Grains& grains, const Vec3& period, double edge) {
   const std::array<double, 3> periods{period.x, period.y, period.z};
   std::array<double, 3> lows{}, lengths{};
@@ -42,7 +52,7 @@ void CellGrid::lay_out(const Grains& grains, const Vec3& period, double edge) {
   for (std::size_t cells = most + 1; cells > most; edge *= 2.0) {
     cells = 1;
     for (std::size_t a = 0; a < axes_.size(); ++a) {
-      const int count = std::clamp(static_cast<int>(lengths[a] / edge), 1, most_cells);
+      const int count = whole_within(lengths[a] / edge, 1.0, most_cells);
       axes_[a] = {lows[a], lengths[a] / count, periods[a], count};
       cells *= static_cast<std::size_t>(count);
     }
@@ -63,7 +73,7 @@ void CellGrid::sort(Grains& grains, const Vec3& period, double edge) {
     for (std::size_t place = 3; place-- > 0;) {
       const Axis& axis = axes_[order_[place]];
       const double at = (g.*coordinates[order_[place]] - axis.low) / axis.width;
-      const int c = std::clamp(static_cast<int>(at), 0, axis.cells - 1);
+      const int c = whole_within(at, 0.0, axis.cells - 1.0);
       index = index * static_cast<std::size_t>(axis.cells) + static_cast<std::size_t>(c);
     }
     return static_cast<std::uint32_t>(index);
@@ -116,8 +126,9 @@ void CellGrid::fill_spots(const Grains& grains, std::span<const double> skins) {
 
 CellGrid::Runs CellGrid::runs(const Axis& axis, double low, double high) const {
   const int last = axis.cells - 1;
-  int a = static_cast<int>(std::floor((low - axis.low) / axis.width));
-  int b = static_cast<int>(std::floor((high - axis.low) / axis.width));
+  constexpr double far = 1e9;  // cells: beyond that a grain is lost anyhow
+  int a = whole_within(std::floor((low - axis.low) / axis.width), -far, far);
+  int b = whole_within(std::floor((high - axis.low) / axis.width), -far, far);
   if (axis.period <= 0.0) return {{std::clamp(a, 0, last), 0}, {std::clamp(b, 0, last), 0}, 1};
   if (b - a >= last) return {{0, 0}, {last, 0}, 1};
   a = (a % axis.cells + axis.cells) % axis.cells;
