@@ -68,7 +68,8 @@ Readings Drop::run(const Settings& s, Session& session) {
                        .low = {-room, -room, -radius},
                        .high = {room, room, room},
                        .time_step_share = std::min(0.2, share),
-                       .fastest = speed})) {
+                       .fastest = speed,
+                       .closed = true})) {
     return {};
   }
   GrainRow grain = sphere(radius, session.grain().density);

@@ -143,6 +143,13 @@ TEST_CASE("the drop test gives back the restitution asked for", "[engine]") {
   }
 }
 
+TEST_CASE("a grain that falls through the floor is told, not looked for", "[engine]") {
+  Trial t = trial("drop");
+  t.parameters.set({"material.shear_modulus", {MaterialId::grain}}, 1e4);
+  t.experiment.settings["height"] = 5.0;
+  CHECK(failure_of(t) == FailureKind::unstable);
+}
+
 TEST_CASE("an opening too narrow for its friction ends as a failure, not as a number", "[engine]") {
   Trial t = small_trial("kettle");
   t.experiment.settings["source"] = 0.0;
