@@ -135,6 +135,7 @@ struct Kettle {
  private:
   /// Mass of the grains that count, kg.
   static double mass_inside(const Settings& s, const World& world);
+  static bool is_full(const Settings& s, Session& session);
   static bool pour_from_hopper(const Settings& s, Session& session);
   static bool pour_from_stream(const Settings& s, Session& session);
   static bool overflow(const Settings& s,
@@ -225,9 +226,29 @@ bool Kettle::pour_from_hopper(const Settings& s, Session& session) {
 }
 
 std::string Kettle::refuse(const Settings& s, double largest_grain_diameter) {
-  return too_short(
-      {{"diameter", s.diameter, 5.0}, {"height", s.height, 3.0}, {"opening", s.opening, 3.0}},
-      largest_grain_diameter);
+  std::string wide;
+  if (s.opening > s.diameter) {
+    wide = "opening = " + millimetres(s.opening) +
+           " pours beside the kettle: it must be at most the diameter, " + millimetres(s.diameter);
+  }
+  return both(
+      too_short(
+          {{"diameter", s.diameter, 5.0}, {"height", s.height, 3.0}, {"opening", s.opening, 3.0}},
+          largest_grain_diameter),
+      wide);
+}
+
+/// Whether there are half as many grains just below the rim as a packed bed has there.
+bool Kettle::is_full(const Settings& s, Session& session) {
+  const double radius = 0.5 * s.diameter;
+  const double d = session.grain().diameter;
+  double there = 0.0;
+  session.world().for_each_grain([&](const GrainRow& g, std::uint32_t /*id*/) {
+    const Vec3 c = g.centre();
+    const bool inside = c.x * c.x + c.y * c.y < radius * radius;
+    if (inside && c.z < s.height && c.z > s.height - d) there += 1.0;
+  });
+  return there >= 0.5 * capacity(s, session) * d / s.height;
 }
 
 double Kettle::mass_inside(const Settings& s, const World& world) {
@@ -262,7 +283,10 @@ Readings Kettle::run(const Settings& s, Session& session) {
   if (hopper) session.world().change_surfaces().pop_back();
   if (!session.rest(10.0)) return {};
   session.stage("filled");
-
+  if (!is_full(s, session)) {
+    session.fail(FailureKind::did_not_fill, "the kettle is not full to its rim");
+    return {};
+  }
   return std::vector{mass_inside(s, session.world()) / volume(s)};
 }
 

@@ -42,6 +42,8 @@ TEST_CASE("apparatus too small for its grains is refused with the smallest that 
              Contains("diameter = 20 mm must be at least 32.48 mm"));
   CHECK_THAT(refused("kettle", {{"opening", 0.010}}).message,
              Contains("opening = 10 mm must be at least 19.49 mm"));
+  CHECK_THAT(refused("kettle", {{"opening", 0.5}}).message,
+             Contains("opening = 500 mm pours beside the kettle"));
   CHECK_THAT(refused("tilting_box", {{"width", 0.010}}).message,
              Contains("width = 10 mm must be at least 19.49 mm"));
   CHECK_THAT(refused("tilting_box", {{"rate", 0.0}}).message, Contains("rate = 0"));
