@@ -202,7 +202,8 @@ bool Session::steps(std::uint64_t count) {
 }
 
 bool Session::run_for(double seconds) {
-  return steps(static_cast<std::uint64_t>(std::llround(seconds / world_->time_step())));
+  const auto count = std::llround(seconds / world_->time_step());
+  return steps(static_cast<std::uint64_t>(std::max(count, 1LL)));
 }
 
 bool Session::until(const std::function<bool()>& condition,
@@ -223,8 +224,7 @@ bool Session::until(const std::function<bool()>& condition,
 bool Session::rest(double limit) {
   constexpr double hold = 0.05;   // s, experiments' definition of rest
   constexpr double watch = 2e-3;  // s
-  const double quiet =
-      std::max(1e-9, 1e-4 * grain_mass() * norm(world_->gravity()) * grain().diameter);
+  const double quiet = 1e-4 * grain_mass() * norm(world_->gravity()) * grain().diameter;
   double since = world_->time();
   const bool rested = until(
       [&] {

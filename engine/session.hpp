@@ -65,9 +65,8 @@ class Session {
              FailureKind kind,
              const std::string& message);
   bool run_for(double seconds);
-  /// Waits until the bed is at rest: mean kinetic energy per grain, spheres that
-  /// spin in their place left out, below max(1e-9 J, 1e-4 m g d)
-  /// for 0.05 s.
+  /// Waits until the bed is at rest: mean kinetic energy per grain, the spin of spheres left out,
+  /// below 1e-4 m g d for 0.05 s.
   bool rest(double limit);
 
   /// Marks the end of a part of the protocol: a frame with that name.
