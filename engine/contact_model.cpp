@@ -211,6 +211,19 @@ PairElastic pair_elastic(const Material& a, const Material& b) {
   return {1.0 / (bend(a) + bend(b)), 1.0 / (shear(a) + shear(b))};
 }
 
+template <class E>
+constexpr int columns_of() {
+  if constexpr (ContactHook<E>) return E::history_columns;
+  return 0;
+}
+
+template <std::size_t... I>
+constexpr int columns_of_all(std::index_sequence<I...> /*all*/) {
+  return (columns_of<std::tuple_element_t<I, AllEffects>>() + ...);
+}
+static_assert(columns_of_all(std::make_index_sequence<std::tuple_size_v<AllEffects>>{}) <=
+              most_history_columns);
+
 template <std::size_t I>
 void bind_one(const ParameterSet& set, MaterialId partner, PairLaw& law) {
   using E = std::tuple_element_t<I, AllEffects>;
