@@ -6,13 +6,14 @@
 ///   k  cohesion energy density, J/m3     d  overlap, m     R_i, R_j  radii, m
 ///   A  area of the circle in which the two spheres (or sphere and plane) cut each other, m2
 ///
-/// The circle is the area of LIGGGHTS's `sjkr`; for small overlaps it is 2 pi R* d, the area of its
-/// `sjkr2`, twice that of Hertz's contact patch. The attraction ends where the overlap does.
+/// The circle is the area of LIGGGHTS's `sjkr`; for small overlaps it is 2 pi R* d, twice that of
+/// Hertz's contact patch. Its `sjkr2` has 4 pi R* d: between grains k is half as large there, at
+/// walls the same. The attraction ends where the overlap does.
 /// Friction keeps leaning on the repulsion alone: two grains pressed with P and held by F meet with
 /// P + F, so Coulomb's cap is mu (P + F) already, and to add F once more would count it twice.
 ///
 /// Source: LIGGGHTS(R)-PUBLIC documentation, cohesion model `sjkr` (the area; the friction cap
-///         without the attraction); Derjaguin 1934, Kolloid-Z. 69, 155-164 (friction leans on load
+///         without the attraction); Derjaguin 1934, Z. Phys. 88, 661-675 (friction leans on load
 ///         plus attraction).
 /// Null:   k = 0: nothing is taken from the force.
 #pragma once

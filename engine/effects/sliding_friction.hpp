@@ -7,8 +7,12 @@
 ///   g  tangential dashpot, N s/m
 ///
 /// The displacement turns with the contact: it is projected on the new tangent plane at its old
-/// length. When the cap acts, the displacement is set back so that spring and dashpot together meet
-/// it.
+/// length. Where the spring alone passes the cap, the displacement is set back until it meets it;
+/// where spring and dashpot together do, the force is.
+///
+/// The stiffness follows the patch while the displacement stays, so that a contact sheared, pressed
+/// further and sheared back gives out (k2 - k1) s^2 / 2 more than it was given (Elata & Berryman
+/// 1996, Mech. Mater. 24, 229-240, on such laws); dashpots and the cap take far more in a bed.
 ///
 /// Source: Mindlin 1949, J. Appl. Mech. 16, 259-268 (stiffness without slip); Cundall & Strack
 ///         1979, Geotechnique 29, 47-65 (incremental spring with cap).

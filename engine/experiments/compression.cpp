@@ -11,7 +11,8 @@
 /// `stress`, on loading. residual_strain_ratio: strain where the stress has come back to a
 /// twentieth of its maximum, over the largest strain.
 ///
-/// Source: uniaxial confined compression as in Chung & Ooi 2008, Granular Matter 10, 125-133.
+/// Source: uniaxial confined compression as in Chung & Ooi 2008, Particulate Science and
+///         Technology 26, 83-96.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -44,7 +45,7 @@ struct Compression {
       .procedure =
           "A bed is filled, struck off and pressed by a flat platen at constant speed past "
           "`stress`; then the platen goes back. Stress is that at the base less the bed's weight.",
-      .citation = "Chung & Ooi 2008, Granular Matter 10, 125-133",
+      .citation = "Chung & Ooi 2008, Particulate Science and Technology 26, 83-96",
   };
   static constexpr std::array fields{
       Field<Settings>{&Settings::side,

@@ -5,7 +5,7 @@
 /// After 0.35 turns and at least a second the slope of the surface over the middle 55 % of the
 /// radius is read every hundredth of a second for two seconds. dynamic_angle: its mean.
 ///
-/// Source: rotating-drum test, Boateng & Barr 1996, Powder Technology 87, 131-141 (rolling bed and
+/// Source: rotating-drum test, Mellmann 2001, Powder Technology 118, 251-270 (rolling bed and
 /// its angle); lifters one grain high so that the bed does not slide as a whole.
 #include <algorithm>
 #include <array>
@@ -42,7 +42,7 @@ struct Drum {
           "The drum is filled with a bed at rest and turned. After 0.35 turns and at least a "
           "second a straight line is laid through the surface over the middle 55 % of the radius, "
           "again and again; the angle is their mean.",
-      .citation = "Boateng & Barr 1996, Powder Technology 87, 131-141",
+      .citation = "Mellmann 2001, Powder Technology 118, 251-270",
   };
   static constexpr std::array fields{
       Field<Settings>{&Settings::diameter,
