@@ -85,6 +85,24 @@ std::int64_t MeasurementStore::add_calibration(const std::string& name,
   return calibration;
 }
 
+SourceRecord MeasurementStore::source(std::int64_t calibration) const {
+  const std::scoped_lock hold(store_.state_->mutex);
+  Statement row = store_.state_->connection.prepare(
+      "SELECT material, measurement_set_id FROM calibration_source WHERE calibration_id = ?");
+  row.bind(calibration);
+  if (!row.step()) return {};
+  return {row.text_or_null(0), row.integer_or_null(1)};
+}
+
+std::optional<MeasurementSetRecord> MeasurementStore::set(std::int64_t id) const {
+  const std::scoped_lock hold(store_.state_->mutex);
+  Statement row = store_.state_->connection.prepare(
+      "SELECT id, name, version, material, created_at, '' FROM measurement_set WHERE id = ?");
+  row.bind(id);
+  if (!row.step()) return std::nullopt;
+  return set_of(row);
+}
+
 std::vector<FitRecord> MeasurementStore::fits(const FitFilter& filter, int limit) const {
   const std::scoped_lock hold(store_.state_->mutex);
   Statement row = store_.state_->connection.prepare(

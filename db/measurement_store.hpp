@@ -63,6 +63,10 @@ class MeasurementStore {
                                const std::string& digest,
                                const SourceRecord& source,
                                std::int64_t now);
+  /// What a calibration is of; nothing of either where nobody said.
+  [[nodiscard]] SourceRecord source(std::int64_t calibration) const;
+  /// Without measurements.
+  [[nodiscard]] std::optional<MeasurementSetRecord> set(std::int64_t id) const;
   /// Of finished calibrations, newest first.
   [[nodiscard]] std::vector<FitRecord> fits(const FitFilter& filter, int limit) const;
 

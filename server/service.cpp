@@ -53,12 +53,30 @@ struct Submitted {
   db::SourceRecord source;
 };
 
+/// What extends a calibration is of the same material where it names none, and of the same set as
+/// long as it has that set's measurements.
+void inherit_source(db::Store& store, Submitted& submitted) {
+  const Calibration& own = submitted.calibration;
+  if (!own.extends) return;
+  const auto record = store.calibration(own.extends->calibration);
+  const auto parent = record ? parse_calibration(record->request) : Unexpected{Problems{}};
+  if (!parent) return;
+  const db::SourceRecord source = db::MeasurementStore(store).source(record->id);
+  if (!submitted.source.material) submitted.source.material = source.material;
+  const bool same_material = submitted.source.material == source.material;
+  if (!submitted.source.set && same_material && own.measurements == parent->measurements) {
+    submitted.source.set = source.set;
+  }
+}
+
 Answer<Submitted> read_submission(db::Store& store, std::string_view submission) {
   const auto resolved = resolve_submission(store, submission);
   if (!resolved) return Unexpected{resolved.error()};
   auto calibration = parse_calibration(resolved->study);
   if (!calibration) return Unexpected{invalid("the study", calibration.error())};
-  return Submitted{*std::move(calibration), resolved->source};
+  Submitted submitted{*std::move(calibration), resolved->source};
+  inherit_source(store, submitted);
+  return submitted;
 }
 
 std::int64_t add_calibration(db::Store& store, const Submitted& submitted) {
@@ -103,7 +121,10 @@ Answer<std::string> Service::calibrate(std::string_view study,
 Answer<std::string> Service::calibration(std::int64_t id) const {
   const auto record = state_->store.calibration(id);
   if (!record) return Unexpected{not_found(id)};
-  return print_job(*record);
+  const db::MeasurementStore measurements(state_->store);
+  const db::SourceRecord source = measurements.source(id);
+  return print_job(
+      *record, source.material, source.set ? measurements.set(*source.set) : std::nullopt);
 }
 
 Page Service::calibrations(int limit, std::optional<std::int64_t> before) const {

@@ -23,8 +23,13 @@ Json summary(const db::CalibrationRecord& record) {
 
 }  // namespace
 
-std::string print_job(const db::CalibrationRecord& record) {
+std::string print_job(const db::CalibrationRecord& record,
+                      const std::optional<std::string>& material,
+                      const std::optional<db::MeasurementSetRecord>& set) {
   Json json = summary(record);
+  json["material"] = material ? Json(*material) : Json(nullptr);
+  json["measurement_set"] =
+      set ? Json{{"name", set->name}, {"version", set->version}} : Json(nullptr);
   json["study"] = document_or_null(record.request);
   json["fit"] = document_or_null(record.fit);
   return to_text(json);

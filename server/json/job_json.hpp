@@ -4,16 +4,20 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "db/measurement_store.hpp"
 #include "db/record.hpp"
 #include "server/json/page.hpp"
 
 namespace repose::server {
 
-/// {"id","name","state","created_at","started_at","finished_at","study","progress","fit","error"}
-std::string print_job(const db::CalibrationRecord& record);
+/// A calibration with its study and fit, and what it is of where that is known.
+std::string print_job(const db::CalibrationRecord& record,
+                      const std::optional<std::string>& material,
+                      const std::optional<db::MeasurementSetRecord>& set);
 
 Page print_jobs(const std::vector<db::CalibrationRecord>& records, int limit);
 

@@ -170,3 +170,28 @@ TEST_CASE("a queued diagnosis is run in the background, and an extension too", "
   CHECK(child["study"]["extends"]["diagnosis"] == diagnosis);
   CHECK(wait([&] { return read(service.calibration(child["id"]))["state"]; }) == "done");
 }
+
+TEST_CASE("an extension is of what it extends: its material, and its set while it has that",
+          "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  json study = json::parse(hidden_drop_study(0.0));
+  const json content{{"material", "ball"}, {"measurements", study["measurements"]}};
+  REQUIRE(service.put_measurement_set("drops", content.dump(), std::nullopt));
+  study.erase("measurements");
+  study["measurement_set"] = {{"name", "drops"}};
+  const json parent = read(service.calibrate(study.dump(), {}, {}));
+  const json drops{{"name", "drops"}, {"version", 1}};
+  CHECK(parent["material"] == "ball");
+  CHECK(parent["measurement_set"] == drops);
+  const auto extended = service.extension_study(parent["id"], "velocity_restitution");
+  REQUIRE(extended);
+  const json child = read(service.submit(*extended));
+  CHECK(child["material"] == "ball");
+  CHECK(child["measurement_set"] == drops);
+  json changed = json::parse(*extended);
+  changed["measurements"][0]["value"] = 0.5;
+  const json other = read(service.submit(changed.dump()));
+  CHECK(other["material"] == "ball");
+  CHECK(other["measurement_set"].is_null());
+}
