@@ -1,6 +1,8 @@
 #include "server/schedules.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "db/schedule_store.hpp"
@@ -40,6 +42,20 @@ Answer<NightlySchedule> read(db::Store& store, std::string_view document) {
                                 "the number of a calibration that is done"}})};
   }
   return *std::move(schedule);
+}
+
+/// Whether both calibrate the same parameters by the same experiments, so that the fit of one can
+/// stand for the other's.
+bool same_question(const calibrator::Calibration& a, const calibrator::Calibration& b) {
+  const auto question = [](const calibrator::Calibration& study) {
+    std::set<std::string> experiments, parameters;
+    for (const auto& measurement : study.measurements) {
+      experiments.insert(std::string(measurement.experiment.name));
+    }
+    for (const auto& parameter : study.free) parameters.insert(engine::to_string(parameter.key));
+    return std::pair(std::move(experiments), std::move(parameters));
+  };
+  return question(a) == question(b);
 }
 
 std::optional<std::int64_t> next_at(const db::ScheduleRecord& record, std::int64_t now) {
@@ -105,6 +121,16 @@ std::vector<DriftFigure> drift_figures(const db::Store& store) {
 Answer<std::string> add_schedule(db::Store& store, std::string_view document, std::int64_t now) {
   const auto read_one = read(store, document);
   if (!read_one) return Unexpected{read_one.error()};
+  if (read_one->start_from &&
+      !same_question(published(store, *read_one->start_from)->calibration, read_one->study)) {
+    const std::string found = std::to_string(*read_one->start_from);
+    return Unexpected{
+        invalid("the schedule",
+                {{"/start_from",
+                  "calibration " + found + " has other experiments or other free parameters",
+                  found,
+                  "a calibration of the experiments and free parameters of the study"}})};
+  }
   ScheduleStore schedules(store);
   const std::int64_t id = schedules.add(read_one->name, print_schedule(*read_one), now);
   if (read_one->start_from) {

@@ -432,3 +432,20 @@ TEST_CASE(
   CHECK(outcomes["moved"] > 0);
   CHECK(outcomes.size() == 3);
 }
+
+TEST_CASE("a schedule starts from a fit of its own experiments and free parameters alone",
+          "[server]") {
+  Plant plant;
+  REQUIRE(plant.service().calibrate(to_text(drop_study(0.6)), {}, {}));
+  Json own = schedule_of(drop_study(0.7));
+  own["start_from"] = 1;
+  CHECK(plant.service().add_schedule(to_text(own)));
+  Json other = own;
+  other["study"] = Json::parse(hidden_drop_study(0.0));
+  other["study"]["free"][0]["field"] = "sliding_friction.coefficient";
+  other["study"]["free"][0]["lower"] = 0.1;
+  const auto refused = plant.service().add_schedule(to_text(other));
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().kind == Refusal::Kind::invalid);
+  CHECK(refused.error().problems.front().pointer == "/start_from");
+}
