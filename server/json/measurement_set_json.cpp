@@ -50,7 +50,7 @@ Json number_in(const std::string& text) {
 }
 
 /// "height=300 mm; speed=15 rpm" -> {"height": {"value": 300, "unit": "mm"}, ...}
-Json settings_in(std::string_view cell) {
+Json settings_in(std::string_view cell, const std::string& line, ProblemList& problems) {
   Json settings = Json::object();
   while (!cell.empty()) {
     const std::size_t end = std::min(cell.find(';'), cell.size());
@@ -60,6 +60,12 @@ Json settings_in(std::string_view cell) {
     const std::string value(trimmed(part.substr(std::min(equals + 1, part.size()))));
     const std::size_t blank = value.find(' ');
     const std::string name(trimmed(part.substr(0, equals)));
+    if (settings.contains(name)) {
+      problems.add({line + ": settings",
+                    "the setting is there twice",
+                    "\"" + name.substr(0, longest_name) + "\"",
+                    "each setting once"});
+    }
     if (blank == std::string::npos) {
       settings[name] = value;  // a choice by its name
     } else {
@@ -103,6 +109,12 @@ Json read_rows(const std::vector<CsvRow>& rows, ProblemList& problems) {
                     "\"" + name.substr(0, longest_name) + "\"",
                     listed(column_names())});
     }
+    if (found != columns.end() && std::ranges::find(head, &*found) != head.end()) {
+      problems.add({line_of(rows.front()),
+                    "the column is there twice",
+                    "\"" + name + "\"",
+                    "each column once"});
+    }
     head.push_back(found == columns.end() ? nullptr : &*found);
   }
   for (const CsvRow& row : std::span(rows).subspan(1)) {
@@ -118,7 +130,7 @@ Json read_rows(const std::vector<CsvRow>& rows, ProblemList& problems) {
       if (cell.empty() || head[k] == nullptr) continue;
       const std::string name(head[k]->name);
       measurement[name] = head[k]->number      ? number_in(cell)
-                          : name == "settings" ? settings_in(cell)
+                          : name == "settings" ? settings_in(cell, line_of(row), problems)
                                                : Json(cell);
     }
     measurements.push_back(std::move(measurement));
@@ -137,8 +149,47 @@ std::string place_in_table(const std::string& pointer, const std::vector<CsvRow>
   return line_of(rows.at(index + 1)) + (rest.empty() ? "" : ": " + rest.substr(1));
 }
 
+/// Complains of lines whose letters are those of another encoding.
+void check_letters(std::string_view text, ProblemList& problems) {
+  for (std::size_t line = 1; !text.empty(); ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    if (!is_utf8(text.substr(0, end))) {
+      problems.add({"line " + std::to_string(line),
+                    "its letters are not UTF-8",
+                    "another encoding",
+                    "a table saved as CSV UTF-8"});
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+}
+
+/// Complains of a label that would not be printed as it is.
+void check_label(const Place& place) {
+  if (!place.exists() || !place.json().is_string()) return;
+  const auto& text = place.json().get_ref<const std::string&>();
+  if (!is_utf8(text)) {
+    place.complain("its letters are not UTF-8", "another encoding", "letters in UTF-8");
+  } else if (has_control_letter(text)) {
+    place.complain("control characters are no part of it",
+                   "a text with a control character",
+                   "a text on one line, without tabs");
+  }
+}
+
+/// Complains of sources among measurements that would not be printed as they are.
+void check_sources(const Json& measurements, ProblemList& problems) {
+  if (!measurements.is_array()) return;
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    const Json& measurement = measurements[i];
+    if (!measurement.is_object() || !measurement.contains("source")) continue;
+    const std::string pointer = pointer_to(pointer_to("/measurements", i), "source");
+    check_label(Place(&measurement["source"], pointer, problems));
+  }
+}
+
 std::string read_material(const Place& place) {
   if (!place.exists()) return {};
+  check_label(place);
   auto text = place.text(longest_name);
   if (text && text->empty()) place.complain("a material has a name", "\"\"", "1 to 100 bytes");
   return std::move(text).value_or("");
@@ -150,6 +201,7 @@ void check_measurements(const Json& measurements, ProblemList& problems) {
   if (measurements.is_array() && measurements.empty()) {
     place.complain("a set holds measurements", "none", "one or more");
   }
+  check_sources(measurements, problems);
   Study study;
   read_measurements(place, study);
 }
@@ -191,6 +243,10 @@ engine::Result<MeasurementSet, Problems> parse_measurement_set(std::string_view 
 engine::Result<MeasurementSet, Problems> parse_measurement_table(std::string_view text,
                                                                  const std::string& material) {
   ProblemList problems;
+  const Json named = material;
+  read_material(Place(&named, "?material", problems));
+  check_letters(text, problems);
+  if (!problems.empty()) return engine::Unexpected{problems.all()};
   const std::vector<CsvRow> rows = read_csv(text);
   if (rows.empty()) {
     problems.add({"line 1", "the table is empty", "", "a head: " + listed(column_names())});
@@ -241,6 +297,9 @@ engine::Result<Submission, Problems> parse_submission(std::string_view text) {
   auto json = parse_text(text, {}, problems);
   // What is wrong with it says the reader of studies, who looks at all of it.
   if (!json || !json->is_object()) return submission;
+  if (json->contains("name")) check_label(Place(&(*json)["name"], "/name", problems));
+  if (json->contains("measurements")) check_sources((*json)["measurements"], problems);
+  if (!problems.empty()) return engine::Unexpected{problems.all()};
   if (!json->contains("material") && !json->contains("measurement_set")) return submission;
   if (json->contains("material")) {
     submission.material = read_material(Place(&(*json)["material"], "/material", problems));

@@ -40,3 +40,43 @@ TEST_CASE("a row begins where its first cell does, and a cell may hold lines", "
   CHECK(rows[0].cells == std::vector<std::string>{"a", "b\nb"});
   CHECK(rows[1].line == 4);
 }
+
+TEST_CASE("a table says each thing once", "[server]") {
+  CHECK(places("value," + head + "0.7," + good) == std::vector<std::string>{"line 1"});
+  const std::string settings = "experiment,observable,value,unit,standard_error,settings\n";
+  CHECK(places(settings + "drop,restitution,0.6,1,0.02,height=151 mm\n").empty());
+  CHECK(places(settings + "drop,restitution,0.6,1,0.02,height=151 mm;height=2 m\n") ==
+        std::vector<std::string>{"line 2: settings"});
+}
+
+TEST_CASE("a table in another encoding is refused by its lines", "[server]") {
+  const std::string with_source = "experiment,observable,value,unit,standard_error,source\n";
+  CHECK(places(with_source + "drop,restitution,0.6,1,0.02,K\xC3\xB6ln\n").empty());
+  CHECK(places(with_source + "drop,restitution,0.6,1,0.02,K\xF6ln\n") ==
+        std::vector<std::string>{"line 2"});
+}
+
+TEST_CASE("a table's material and sources are as a document's", "[server]") {
+  using repose::server::parse_measurement_table;
+  for (const std::string& material :
+       {std::string("\xff\xfe"), std::string(300, 'a'), std::string("gl\nass")}) {
+    const auto set = parse_measurement_table(head + good, material);
+    REQUIRE_FALSE(set);
+    CHECK(set.error().front().pointer == "?material");
+  }
+  const std::string with_source = "experiment,observable,value,unit,standard_error,source\n";
+  CHECK(places(with_source + "drop,restitution,0.6,1,0.02,\"a\x1b[2J\"\n") ==
+        std::vector<std::string>{"line 2: source"});
+}
+
+TEST_CASE("what a submission is called has no control characters", "[server]") {
+  using repose::server::parse_submission;
+  CHECK(parse_submission(R"({"name":"lab box","material":"soja \u00e4"})"));
+  const auto submission = parse_submission(
+      R"({"name":"lab\nbox","measurements":[{"source":"\u0000"},{"source":"\u009b2J"}]})");
+  REQUIRE_FALSE(submission);
+  std::vector<std::string> where;
+  for (const auto& problem : submission.error()) where.push_back(problem.pointer);
+  CHECK(where ==
+        std::vector<std::string>{"/name", "/measurements/0/source", "/measurements/1/source"});
+}
