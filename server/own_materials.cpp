@@ -40,6 +40,7 @@ bool is_name(std::string_view text) {
   constexpr std::string_view letters =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
   constexpr std::size_t longest = 64;
+  if (text == "." || text == "..") return false;  // an address that has them is another: RFC 3986
   return !text.empty() && text.size() <= longest &&
          text.find_first_not_of(letters) == std::string_view::npos;
 }
@@ -50,7 +51,7 @@ Refusal no_name(const std::string& text) {
           {{"name",
             "a name stands in addresses",
             "\"" + text.substr(0, 64) + "\"",
-            "1 to 64 letters, digits, dots, underscores and hyphens"}}};
+            "1 to 64 letters, digits, dots, underscores and hyphens; neither . nor .."}}};
 }
 
 Answer<std::string> put_material(db::Store& store,

@@ -13,6 +13,7 @@
 
 #include "server/access/secret.hpp"
 #include "server/json/token_json.hpp"
+#include "server/letters.hpp"
 
 namespace repose::server {
 
@@ -118,9 +119,9 @@ bool Tokens::revoke(const std::string& id, std::int64_t now) {
 }
 
 std::optional<Token> Tokens::find(std::string_view authorization) {
-  constexpr std::string_view scheme = "Bearer ";
+  constexpr std::string_view scheme = "bearer ";  // in any case: RFC 9110, 11.1
   constexpr std::size_t id_letters = id_bytes / 3 * 4;
-  if (!authorization.starts_with(scheme)) return std::nullopt;
+  if (lower_case(authorization.substr(0, scheme.size())) != scheme) return std::nullopt;
   authorization.remove_prefix(scheme.size());
   if (!authorization.starts_with(prefix)) return std::nullopt;
   authorization.remove_prefix(prefix.size());

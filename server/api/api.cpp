@@ -63,7 +63,7 @@ void tag(const Request& request, Reply& reply) {
   if (!reads(request) || reply.status != 200 || reply.stream) return;
   const std::string own = entity_tag(reply.body);
   reply.headers.emplace_back("ETag", own);
-  if (!names_tag(request.field("if-none-match"), own)) return;
+  if (!names_tag_weakly(request.field("if-none-match"), own)) return;
   reply.status = 304;
   reply.body.clear();
 }
@@ -182,7 +182,19 @@ Reply Api::change(const Route& route, const Request& request) {
   if (!request.field("if-match").empty()) {
     if (auto refusal = refuse_unread(request)) return std::move(*refusal);
   }
+  if (request.method == "PUT" && request.field("if-none-match") == "*" && is_there(request)) {
+    return problem_reply(412, "It is there already.");
+  }
   return run_route(route, service_, request);
+}
+
+/// Whether there is something to be read where a change goes.
+bool Api::is_there(const Request& request) {
+  Request reading;
+  reading.method = "GET";
+  reading.path = request.path;
+  const auto current = find_route(reading);
+  return current && run_route(**current, service_, reading).status == 200;
 }
 
 /// Why not to change a thing of which the client names another state than it has now, in whichever

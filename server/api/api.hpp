@@ -30,6 +30,7 @@ class Api {
   Reply answer(const Route& route, Request& request);
   Reply once(const Route& route, const Request& request);
   Reply change(const Route& route, const Request& request);
+  bool is_there(const Request& request);
   std::optional<Reply> refuse_unread(const Request& request);
 
   Service& service_;

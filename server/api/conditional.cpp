@@ -11,7 +11,11 @@ std::string entity_tag(std::string_view body) {
   return "\"" + digest(body).substr(0, letters) + "\"";
 }
 
-bool names_tag(std::string_view field, std::string_view tag) {
+namespace {
+
+/// Whether one of the tags in a field is the same as that one.
+template <class Same>
+bool any_tag(std::string_view field, const Same& same) {
   if (field == "*") return true;
   while (!field.empty()) {
     const std::size_t end = std::min(field.find(','), field.size());
@@ -19,9 +23,22 @@ bool names_tag(std::string_view field, std::string_view tag) {
     field.remove_prefix(std::min(end + 1, field.size()));
     while (!named.empty() && named.front() == ' ') named.remove_prefix(1);
     while (!named.empty() && named.back() == ' ') named.remove_suffix(1);
-    if (named == tag) return true;
+    if (same(named)) return true;
   }
   return false;
+}
+
+}  // namespace
+
+bool names_tag(std::string_view field, std::string_view tag) {
+  return any_tag(field, [tag](std::string_view named) { return named == tag; });
+}
+
+bool names_tag_weakly(std::string_view field, std::string_view tag) {
+  return any_tag(field, [tag](std::string_view named) {
+    if (named.starts_with("W/")) named.remove_prefix(2);
+    return named == tag;
+  });
 }
 
 }  // namespace repose::server

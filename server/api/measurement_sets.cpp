@@ -5,6 +5,7 @@
 #include "server/api/problem.hpp"
 #include "server/api/query.hpp"
 #include "server/api/reply.hpp"
+#include "server/api/route.hpp"
 #include "server/service.hpp"
 
 namespace repose::server::handlers {
@@ -41,7 +42,7 @@ Reply put_measurement_set(Service& service, const Request& request) {
   Query query(request);
   auto material = query.text("material");
   if (!query.problems().empty()) return query.refusal();
-  const bool table = request.content_type.starts_with("text/csv");
+  const bool table = media_type(request.content_type) == "text/csv";
   if (table && material.value_or("").empty()) {
     return problem_reply(
         400,

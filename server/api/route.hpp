@@ -76,6 +76,9 @@ struct Route {
   std::string_view also = {};                   ///< another form that body or answer may have
 };
 
+/// A media type without its parameters, in lower case.
+std::string media_type(std::string_view content_type);
+
 /// What a token must give for a request of that route.
 Scope needed_scope(const Route& route);
 

@@ -184,12 +184,11 @@ std::optional<PathParts> match(std::string_view pattern, std::string_view path) 
   return parts;
 }
 
-/// A media type without its parameters, in lower case.
+}  // namespace
+
 std::string media_type(std::string_view content_type) {
   return lower_case(trimmed(content_type.substr(0, content_type.find(';'))));
 }
-
-}  // namespace
 
 std::span<const Route> routes() { return table; }
 

@@ -137,3 +137,44 @@ TEST_CASE("between the look at what was read and its change nobody else changes 
     CHECK(version(changed) == version(read) + 1);
   }
 }
+
+TEST_CASE("a media type is the same in any case", "[server]") {
+  const TemporaryFolder folder;
+  Asked asked(folder);
+  Request request;
+  request.method = "PUT";
+  request.path = set_address;
+  request.query = {{"material", "glass"}};
+  request.content_type = "Text/CSV; charset=utf-8";
+  request.body = "experiment,observable,value,unit,standard_error\ndrop,restitution,0.6,1,0.02\n";
+  CHECK(asked.api.respond(request).status == 200);
+}
+
+TEST_CASE("what must not be there yet is not put a second time", "[server]") {
+  const TemporaryFolder folder;
+  Asked asked(folder);
+  const Fields absent{{"if-none-match", "*"}};
+  CHECK(asked.put_table("0.6", absent).status == 200);
+  CHECK(asked.put_table("0.7", absent).status == 412);
+  CHECK(version(asked.get(set_address)) == 1);
+}
+
+TEST_CASE("what a client has by a weak tag is not sent again, and not changed by it", "[server]") {
+  const TemporaryFolder folder;
+  Asked asked(folder);
+  asked.put_table("0.6");
+  const std::string weak = "W/" + header(asked.get(set_address), "ETag");
+  CHECK(asked.get(set_address, {{"if-none-match", weak}}).status == 304);
+  CHECK(asked.put_table("0.7", {{"if-match", weak}}).status == 412);
+}
+
+TEST_CASE("names that are steps of an address are no names", "[server]") {
+  const TemporaryFolder folder;
+  Asked asked(folder);
+  const std::string content = R"({"material":"glass","measurements":[{"experiment":"drop",)"
+                              R"("observable":"restitution","value":0.6,"unit":"1",)"
+                              R"("standard_error":0.02}]})";
+  CHECK(asked.service.put_measurement_set("...", content, std::nullopt));
+  CHECK_FALSE(asked.service.put_measurement_set(".", content, std::nullopt));
+  CHECK_FALSE(asked.service.put_measurement_set("..", content, std::nullopt));
+}

@@ -60,6 +60,7 @@ TEST_CASE("a token is known by its secret, which is nowhere kept", "[server]") {
   const auto token = tokens.find("Bearer " + text);
   REQUIRE(token);
   CHECK(token->name == "ada");
+  CHECK(tokens.find("bearer " + text));
   CHECK(scope_at(*token, 200) == Scope::submit);
   const std::string secret = text.substr(13);
   CHECK(read(folder / "tokens").find(secret) == std::string::npos);
