@@ -50,13 +50,15 @@ std::string fit_text(const Json& fit) {
     for (const Json& material : parameter.value("between", Json::array())) {
       between += (between.empty() ? ":" : "-") + material.get<std::string>();
     }
-    const auto number = [&](const char* which) {
-      const Json value = member(parameter, which);
+    const auto number = [](const Json& value) {
       return value.is_number() ? short_number(value.get<double>()) : std::string("-");
     };
+    const Json interval = member(parameter, "interval");
     table.row({name + between,
-               number("value"),
-               number("lower") + " to " + number("upper"),
+               number(member(parameter, "value")),
+               interval.is_array() && interval.size() == 2
+                   ? number(interval[0]) + " to " + number(interval[1])
+                   : "-",
                word(parameter, "unit")});
   }
   return table.str();
