@@ -1,5 +1,6 @@
 #include "server/exports/export.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdio>
@@ -41,7 +42,8 @@ std::string print_csv(const ExportedFit& fit) {
     text += name.substr(0, colon) + ",";
     if (colon != std::string::npos) text += name.substr(colon + 1);
     text += "," + in_unit_text(value, unit) + "," + std::string(unit.symbol);
-    std::string interval = ",,,fixed";
+    const bool tied = std::ranges::count(fit.calibration.tied, key, &calibrator::Tie::key) > 0;
+    std::string interval = tied ? ",,,tied" : ",,,fixed";
     for (const calibrator::FittedParameter& fitted : fit.fit.parameters) {
       if (fitted.key != key) continue;
       interval = "," + in_unit_text(fitted.lower, unit) + "," + in_unit_text(fitted.upper, unit) +

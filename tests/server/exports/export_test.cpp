@@ -117,4 +117,11 @@ TEST_CASE("the table of a fit has a line for each parameter, with its interval",
   CHECK_THAT(text,
              Catch::Contains("sliding_friction.coefficient,grain-grain,0.45,1,0.4,0.5,yes\r\n"));
   CHECK_THAT(text, Catch::Contains("material.diameter,grain,6.496,mm,,,fixed\r\n"));
+  auto tied = fit_of(set);
+  tied.calibration.tied.push_back(
+      {engine::make_key("material.diameter", {engine::MaterialId::grain}),
+       engine::make_key("material.density", {engine::MaterialId::grain}),
+       1.0});
+  CHECK_THAT(print_export(tied, ExportFormat::csv),
+             Catch::Contains("material.diameter,grain,6.496,mm,,,tied\r\n"));
 }
