@@ -330,7 +330,7 @@ TEST_CASE("new measurements do not lose the night that waits for its delay, othe
   CHECK(plant.history().size() == 1);
 }
 
-TEST_CASE("a night whose model is no longer adequate ends with its diagnosis", "[server]") {
+TEST_CASE("a night whose model is no longer adequate ends with its diagnosis", "[server][slow]") {
   constexpr double hidden = 6e-5;  // s; velocity_restitution.relaxation
   const Json schedule = schedule_of(Json::parse(hidden_drop_study(hidden)));
   Plant whole;
@@ -355,7 +355,7 @@ TEST_CASE("a night whose model is no longer adequate ends with its diagnosis", "
   CHECK(cut.answers() < whole.answers());
 }
 
-TEST_CASE("two schedules of one study and one time have nights of their own", "[server]") {
+TEST_CASE("two schedules of one study and one time have nights of their own", "[server][slow]") {
   Plant plant;
   plant.add(0.6);
   plant.add(0.6);
