@@ -355,7 +355,7 @@ TEST_CASE("a night whose model is no longer adequate ends with its diagnosis", "
   CHECK(cut.answers() < whole.answers());
 }
 
-TEST_CASE("two schedules of one study and one time have nights of their own", "[server][slow]") {
+TEST_CASE("two schedules of one study and one time have nights of their own", "[server]") {
   Plant plant;
   plant.add(0.6);
   plant.add(0.6);
