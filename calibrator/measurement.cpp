@@ -27,6 +27,10 @@ bool is_same_question(const engine::Experiment& a, const engine::Experiment& b) 
   return declared(a) && declared(b) && same_at(draft) && same_at(standard) && same_at(paper);
 }
 
+bool is_same_quantity(const Measurement& a, const Measurement& b) {
+  return a.observable == b.observable && is_same_question(a.experiment, b.experiment);
+}
+
 std::vector<std::span<const Measurement>> lines_of(std::span<const Measurement> measurements) {
   std::vector<std::span<const Measurement>> lines;
   for (std::size_t first = 0, end = 0; first < measurements.size(); first = end) {

@@ -35,6 +35,9 @@ struct Measurement {
 /// The same experiment under the same settings, defaults spelt out or not, whatever the fidelity.
 bool is_same_question(const engine::Experiment& a, const engine::Experiment& b);
 
+/// Two readings of one thing, whatever they read and whoever made them.
+bool is_same_quantity(const Measurement& a, const Measurement& b);
+
 /// The measurements as a reader sees them: the points of a curve together, any other by itself.
 std::vector<std::span<const Measurement>> lines_of(std::span<const Measurement> measurements);
 

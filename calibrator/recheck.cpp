@@ -27,16 +27,12 @@ std::size_t site_of(Ledger& ledger, const UnitPoint& point) {
   return ledger.site_at(point);
 }
 
-bool is_same_quantity(const Measurement& a, const Measurement& b) {
-  return is_same_question(a.experiment, b.experiment) && a.observable == b.observable &&
-         a.role == b.role;
-}
-
 /// The incumbent's measurement of the same quantity; nothing where tonight's is new.
 std::optional<std::size_t> published(const Measurement& measurement, const Published& incumbent) {
   const auto& before = incumbent.calibration.measurements;
-  const auto found = std::ranges::find_if(
-      before, [&](const Measurement& other) { return is_same_quantity(measurement, other); });
+  const auto found = std::ranges::find_if(before, [&](const Measurement& other) {
+    return is_same_quantity(measurement, other) && measurement.role == other.role;
+  });
   if (found == before.end()) return std::nullopt;
   return static_cast<std::size_t>(found - before.begin());
 }

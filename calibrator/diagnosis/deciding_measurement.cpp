@@ -36,13 +36,6 @@ constexpr std::array conditions{
     Condition{"tilting_box", "depth", {0.6, 1.4}},
 };
 
-/// The same question, defaults spelt out or not.
-bool same(const engine::ExperimentInfo& info, const Measurement& a, const Measurement& b) {
-  return a.observable == b.observable && a.experiment.name == b.experiment.name &&
-         engine::resolved_settings(info, a.experiment) ==
-             engine::resolved_settings(info, b.experiment);
-}
-
 /// What the study's own readings of the observable reach, else what is usual; of the size.
 double relative_error(const Calibration& calibration, const Measurement& candidate) {
   double sum = 0.0;
@@ -166,12 +159,9 @@ std::vector<Candidate> candidates_of(const Calibration& calibration, const Toler
         candidate.experiment = variant;
         candidate.observable = observable.name;
         candidate.unit = observable.unit;
-        const bool known =
-            std::ranges::any_of(calibration.measurements, [&](const Measurement& own) {
-              Measurement there = own;
-              there.experiment.fidelity = variant.fidelity;
-              return same(info, there, candidate);
-            });
+        const bool known = std::ranges::any_of(
+            calibration.measurements,
+            [&](const Measurement& own) { return is_same_quantity(own, candidate); });
         if (known) continue;
         const double error =
             std::hypot(relative_error(calibration, candidate), tolerance_of(candidate, stated));

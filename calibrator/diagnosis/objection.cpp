@@ -42,20 +42,12 @@ void few_measurements(const Calibration& calibration,
       ", or fix parameters that are known");
 }
 
-bool one_thing(const Measurement& a, const Measurement& b) {
-  if (a.observable != b.observable || a.experiment.name != b.experiment.name) return false;
-  const engine::ExperimentInfo* info = engine::find_experiment(a.experiment.name);
-  if (info == nullptr) return a.experiment.settings == b.experiment.settings;
-  return engine::resolved_settings(*info, a.experiment) ==
-         engine::resolved_settings(*info, b.experiment);
-}
-
 void contradictions(const Calibration& calibration, std::vector<std::string>& found) {
   constexpr double apart = 5.0;  // standard errors
   const auto& all = calibration.measurements;
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (!one_thing(all[i], all[j])) continue;
+      if (!is_same_quantity(all[i], all[j])) continue;
       const double error = std::hypot(standard_uncertainty(all[i]), standard_uncertainty(all[j]));
       const double gap = std::abs(all[i].value - all[j].value);
       if (!(gap > apart * error)) continue;
