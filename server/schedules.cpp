@@ -46,7 +46,7 @@ Answer<NightlySchedule> read(db::Store& store, std::string_view document) {
 
 /// Whether both calibrate the same parameters by the same experiments, so that the fit of one can
 /// stand for the other's.
-bool same_question(const calibrator::Calibration& a, const calibrator::Calibration& b) {
+bool same_search(const calibrator::Calibration& a, const calibrator::Calibration& b) {
   const auto question = [](const calibrator::Calibration& study) {
     std::set<std::string> experiments, parameters;
     for (const auto& measurement : study.measurements) {
@@ -122,7 +122,7 @@ Answer<std::string> add_schedule(db::Store& store, std::string_view document, st
   const auto read_one = read(store, document);
   if (!read_one) return Unexpected{read_one.error()};
   if (read_one->start_from &&
-      !same_question(published(store, *read_one->start_from)->calibration, read_one->study)) {
+      !same_search(published(store, *read_one->start_from)->calibration, read_one->study)) {
     const std::string found = std::to_string(*read_one->start_from);
     return Unexpected{
         invalid("the schedule",

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/access/secret.hpp"
+#include "server/letters.hpp"
 
 namespace repose::server {
 
@@ -19,10 +20,8 @@ bool any_tag(std::string_view field, const Same& same) {
   if (field == "*") return true;
   while (!field.empty()) {
     const std::size_t end = std::min(field.find(','), field.size());
-    std::string_view named = field.substr(0, end);
+    const std::string_view named = trimmed(field.substr(0, end));
     field.remove_prefix(std::min(end + 1, field.size()));
-    while (!named.empty() && named.front() == ' ') named.remove_prefix(1);
-    while (!named.empty() && named.back() == ' ') named.remove_suffix(1);
     if (same(named)) return true;
   }
   return false;
