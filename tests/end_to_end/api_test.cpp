@@ -2,9 +2,7 @@
 
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -16,22 +14,16 @@
 #include "server/api/http_server.hpp"
 #include "server/json/report_json.hpp"
 #include "server/service.hpp"
+#include "tests/support/example.hpp"
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 using repose::server::HttpServer;
 using repose::tests::Api;
+using repose::tests::example;
 using repose::tests::TemporaryFolder;
 namespace fs = std::filesystem;
-
-std::string example(const std::string& name) {
-  std::ifstream file(fs::path(REPOSE_SOURCE_DIR) / "schemas" / "examples" / name);
-  REQUIRE(file);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 bool is_problem(const httplib::Response& response, int status) {
   return response.status == status &&

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <string>
@@ -8,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/api.hpp"
+#include "tests/support/example.hpp"
 #include "tests/support/wire.hpp"
 
 namespace {
@@ -15,12 +15,7 @@ namespace {
 using namespace repose::tests;
 using Json = nlohmann::ordered_json;
 
-std::string drop_study() {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+std::string drop_study() { return example("valid/drop-minimal.json"); }
 
 Wire follow(const Api& api, const std::string& path, const std::string& fields = "") {
   Wire wire(api.port());

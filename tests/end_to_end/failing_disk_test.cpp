@@ -1,13 +1,13 @@
 // Two of five syncs fail (libfiu): what was acknowledged is there, and no calibration is blamed.
 #include <chrono>
 #include <cstdlib>
-#include <fstream>
 #include <set>
 #include <thread>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/example.hpp"
 #include "tests/support/not_tried.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/served.hpp"
@@ -19,8 +19,7 @@ using namespace repose::tests;
 using Json = nlohmann::ordered_json;
 
 httplib::Result submit(httplib::Client& client, int number) {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  Json study = Json::parse(file);
+  Json study = Json::parse(example("valid/drop-minimal.json"));
   study["seed"] = number;
   return client.Post("/v1/calibrations",
                      {{"Idempotency-Key", "key-" + std::to_string(number)}},

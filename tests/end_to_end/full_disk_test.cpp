@@ -3,13 +3,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <thread>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/example.hpp"
 #include "tests/support/not_tried.hpp"
 #include "tests/support/served.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -21,8 +21,7 @@ using Json = nlohmann::ordered_json;
 
 /// The minimal study with impacts resolved finely: an evaluation takes some tenths of a second.
 std::string study(int seed, bool slow) {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  Json json = Json::parse(file);
+  Json json = Json::parse(example("valid/drop-minimal.json"));
   json["seed"] = seed;
   if (slow) {
     json["measurements"][0]["settings"] = {{"steps_per_impact", {{"value", 10000}, {"unit", "1"}}}};

@@ -4,19 +4,18 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <random>
 #include <set>
-#include <sstream>
 #include <thread>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "db/sqlite.hpp"
+#include "tests/support/example.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/served.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -28,8 +27,7 @@ using Json = nlohmann::ordered_json;
 
 /// The minimal study, each with a seed of its own so that each has work of its own.
 std::string study(int seed) {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  Json json = Json::parse(file);
+  Json json = Json::parse(example("valid/drop-minimal.json"));
   json["seed"] = seed;
   return json.dump();
 }

@@ -1,26 +1,17 @@
 // What users keep: sets of measurements, and the fits that come of them.
 
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <string>
 
 #include <catch2/catch.hpp>
 
 #include "tests/support/api.hpp"
+#include "tests/support/example.hpp"
 
 namespace {
 
 using namespace repose::tests;
 using Json = nlohmann::ordered_json;
-
-std::string example(const std::string& name) {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/" + name);
-  REQUIRE(file);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 const std::string table =
     "experiment,observable,value,unit,standard_error,source,settings\r\n"
@@ -30,7 +21,7 @@ const std::set<std::string> ends{"done", "failed", "cancelled"};
 
 /// The example's study, with a set in place of its measurements.
 std::string study_of(const Json& set) {
-  Json study = Json::parse(example("drop-minimal.json"));
+  Json study = Json::parse(example("valid/drop-minimal.json"));
   study.erase("measurements");
   study["measurement_set"] = set;
   return study.dump();
@@ -135,7 +126,7 @@ TEST_CASE("a calibration of a set leads to the best fit of its material", "[end_
   api.put(address + "?material=glass", table, "text/csv");
   const std::string path = api.submit(study_of({{"name", "may"}, {"version", 1}}));
   REQUIRE(api.wait(path, ends)["state"] == "done");
-  const std::string other = api.submit(example("drop-minimal.json"));  // of no material
+  const std::string other = api.submit(example("valid/drop-minimal.json"));  // of no material
   REQUIRE(api.wait(other, ends)["state"] == "done");
 
   const Json page = Json::parse(api.get("/v1/fits?material=glass&latest=true").body);
@@ -168,10 +159,10 @@ TEST_CASE("a submission that names no set that is kept is refused", "[end_to_end
     INFO(set);
     CHECK(api.post(study_of(set)).status == 422);
   }
-  Json both = Json::parse(example("drop-minimal.json"));
+  Json both = Json::parse(example("valid/drop-minimal.json"));
   both["measurement_set"] = {{"name", "may"}};
   CHECK(api.post(both.dump()).status == 422);
-  Json named = Json::parse(example("drop-minimal.json"));
+  Json named = Json::parse(example("valid/drop-minimal.json"));
   named["material"] = "glass";
   CHECK(api.post(named.dump()).status == 202);
 }
@@ -181,7 +172,7 @@ TEST_CASE("a grain of one's own is kept, replaced knowingly, and removed", "[end
   Api api(folder);
   const std::string path = "/v1/materials/our-beads";
   const auto put = [&](const char* title, const httplib::Headers& fields = {}) {
-    const Json study = Json::parse(example("drop-minimal.json"));
+    const Json study = Json::parse(example("valid/drop-minimal.json"));
     const Json document{{"title", title}, {"grain", study["materials"]["grain"]}};
     return api.put(path, document.dump(), "application/json", fields);
   };
@@ -214,7 +205,7 @@ TEST_CASE("a grain of one's own is kept, replaced knowingly, and removed", "[end
 TEST_CASE("a study of one's own material may leave its grain out", "[end_to_end]") {
   const TemporaryFolder folder;
   Api api(folder);
-  Json study = Json::parse(example("drop-minimal.json"));
+  Json study = Json::parse(example("valid/drop-minimal.json"));
   const Json grain = study["materials"]["grain"];
   study["materials"].erase("grain");
   study["material"] = "our-beads";

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/service.hpp"
+#include "tests/support/example.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -17,6 +18,7 @@ using Catch::Contains;
 using Json = nlohmann::json;
 using repose::server::Service;
 using repose::server::ServiceOptions;
+using repose::tests::example;
 using repose::tests::repose_program;
 using repose::tests::TemporaryFolder;
 
@@ -47,8 +49,7 @@ ServiceOptions options(const TemporaryFolder& folder) {
 }
 
 std::string study(const TemporaryFolder& folder, double restitution) {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  Json document = Json::parse(file);
+  Json document = Json::parse(example("valid/drop-minimal.json"));
   document["measurements"][0]["value"] = restitution;
   const auto path = folder / "study.json";
   std::ofstream(path) << document;
@@ -89,8 +90,7 @@ TEST_CASE("a study that names a material and a set is taken as it is sent to the
           "[end_to_end]") {
   const TemporaryFolder folder;
   const std::string db = " --db " + (folder / "a.db").string();
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  Json document = Json::parse(file);
+  Json document = Json::parse(example("valid/drop-minimal.json"));
   const auto keep = [&](double restitution) {
     document["measurements"][0]["value"] = restitution;
     const Json set{{"material", "our-beads"}, {"measurements", document["measurements"]}};

@@ -1,30 +1,26 @@
 // The program's file is replaced while a service runs, as a package manager does it.
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <thread>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/example.hpp"
 #include "tests/support/served.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+using repose::tests::example;
 using repose::tests::repose_program;
 using repose::tests::Served;
 using repose::tests::TemporaryFolder;
 
 namespace {
 
-std::string drop_study() {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+std::string drop_study() { return example("valid/drop-minimal.json"); }
 
 /// Puts a program of another version in the place of that one.
 void replace(const fs::path& program) {

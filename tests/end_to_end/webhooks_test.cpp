@@ -1,14 +1,13 @@
 // A receiver on the loopback, told by a running service.
 #include <atomic>
 #include <condition_variable>
-#include <fstream>
 #include <mutex>
-#include <sstream>
 #include <thread>
 
 #include "server/access/secret.hpp"
 #include "server/webhooks/post.hpp"
 #include "tests/support/api.hpp"
+#include "tests/support/example.hpp"
 
 namespace {
 
@@ -60,12 +59,7 @@ class Receiver {
   int port_ = 0;
 };
 
-std::string study() {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+std::string study() { return example("valid/drop-minimal.json"); }
 
 }  // namespace
 

@@ -1,11 +1,9 @@
 // The API does what its own description says: requests made from it, good and bad, get answers that
 // it describes, and never one that the service has failed.
 
-#include <fstream>
 #include <map>
 #include <random>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "server/json/openapi.hpp"
 #include "server/service.hpp"
 #include "tests/schemas/schema_check.hpp"
+#include "tests/support/example.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace {
@@ -22,17 +21,10 @@ namespace {
 using repose::server::Api;
 using repose::server::Reply;
 using repose::server::Request;
+using repose::tests::example;
 using repose::tests::Json;
 using repose::tests::TemporaryFolder;
 using repose::tests::violations;
-
-std::string example(const std::string& name) {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/" + name);
-  REQUIRE(file);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 Reply ask(Api& api, const std::string& method, const std::string& path) {
   Request request;

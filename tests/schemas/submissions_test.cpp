@@ -1,6 +1,5 @@
 // Studies as they are sent: what the schema of submissions says of them, and what the program.
 
-#include <fstream>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -8,21 +7,19 @@
 #include "server/json/openapi.hpp"
 #include "server/service.hpp"
 #include "tests/schemas/schema_check.hpp"
+#include "tests/support/example.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace {
 
 using repose::server::Service;
 using repose::tests::conforms;
+using repose::tests::example;
 using repose::tests::Json;
 using repose::tests::TemporaryFolder;
 using repose::tests::violations;
 
-Json study() {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  REQUIRE(file);
-  return Json::parse(file);
-}
+Json study() { return Json::parse(example("valid/drop-minimal.json")); }
 
 /// The example with a set in place of its measurements.
 Json with_set(const Json& set) {

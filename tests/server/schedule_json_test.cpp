@@ -1,22 +1,18 @@
 #include "server/json/schedule_json.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include <catch2/catch.hpp>
 
 #include "server/json/text.hpp"
+#include "tests/support/example.hpp"
 
 using namespace repose::server;
 
 namespace {
 
-Json study() {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  return Json::parse(file);
-}
+Json study() { return Json::parse(repose::tests::example("valid/drop-minimal.json")); }
 
 /// No study of these tests names a set.
 repose::engine::Result<std::string, Problems> as_it_is(std::string_view study) {

@@ -6,7 +6,6 @@
 #include <future>
 #include <memory>
 #include <mutex>
-#include <sstream>
 #include <thread>
 
 #include <catch2/catch.hpp>
@@ -14,21 +13,18 @@
 #include "db/store.hpp"
 #include "server/json/report_json.hpp"
 #include "server/json/text.hpp"
+#include "tests/support/example.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace repose;
 using namespace repose::server;
+using repose::tests::example;
 using repose::tests::TemporaryFolder;
 
 namespace {
 
-std::string drop_study() {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+std::string drop_study() { return example("valid/drop-minimal.json"); }
 
 ServiceOptions in(const TemporaryFolder& folder) {
   ServiceOptions options;

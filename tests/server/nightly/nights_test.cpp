@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
 #include <functional>
 #include <iomanip>
 #include <map>
@@ -23,6 +22,7 @@
 #include "server/nightly/time_zone.hpp"
 #include "server/service.hpp"
 #include "tests/support/captured_log.hpp"
+#include "tests/support/example.hpp"
 #include "tests/support/hidden_drop.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -31,14 +31,14 @@ using namespace repose::server;
 using namespace std::chrono;
 using namespace std::chrono_literals;
 using repose::tests::CapturedLog;
+using repose::tests::example;
 using repose::tests::hidden_drop_study;
 using repose::tests::TemporaryFolder;
 
 namespace {
 
 Json drop_study(double restitution, double standard_error = 0.02) {
-  std::ifstream file(REPOSE_SOURCE_DIR "/schemas/examples/valid/drop-minimal.json");
-  Json study = Json::parse(file);
+  Json study = Json::parse(example("valid/drop-minimal.json"));
   study["measurements"][0]["value"] = restitution;
   study["measurements"][0]["standard_error"] = standard_error;
   return study;
