@@ -47,7 +47,8 @@ struct Trial {
 /// replicates.
 struct Observation {
   std::string name;
-  double value = 0.0;  ///< SI
+  double value = 0.0;       ///< SI; NaN where it could not be read
+  std::string unread = {};  ///< then why, in words
 };
 
 enum class FailureKind : std::uint8_t {
@@ -55,7 +56,7 @@ enum class FailureKind : std::uint8_t {
   time_step_too_large,  ///< the step asked for exceeds the stable one
   did_not_fill,         ///< fewer grains could be inserted than the procedure needs
   did_not_rest,         ///< still moving at the time limit
-  not_observed,         ///< the run ended but the observable could not be read
+  not_observed,         ///< the run ended but none of the observables could be read
   unstable,             ///< overlap beyond reason, a lost grain or a number that is none
   timed_out,            ///< the host ended it (wall-clock limit)
   cancelled,            ///< the host asked it to stop

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/catalogue.hpp"
 #include "engine/shape_population.hpp"
@@ -157,6 +158,24 @@ bool Session::fail(FailureKind kind, const std::string& message) {
   return false;
 }
 
+Outcome outcome_of(const Readings& readings,
+                   std::span<const ObservableInfo> observables,
+                   const Session& session) {
+  if (!readings) return session.failure();
+  std::vector<Observation> observations;
+  for (std::size_t i = 0; i < observables.size(); ++i) {
+    const Reading& reading = (*readings)[i];
+    Observation& seen = observations.emplace_back(std::string(observables[i].name));
+    seen.value = reading ? *reading : std::numeric_limits<double>::quiet_NaN();
+    if (!reading) seen.unread = reading.error();
+  }
+  if (std::ranges::any_of(observations, &std::string::empty, &Observation::unread)) {
+    return observations;
+  }
+  return Failure{
+      FailureKind::not_observed, observations.front().unread, session.effort().simulated_seconds};
+}
+
 Failure Session::failure() const {
   return failure_.value_or(Failure{FailureKind::not_observed, "the protocol ended early", 0.0});
 }
@@ -201,10 +220,11 @@ bool Session::steps(std::uint64_t count) {
   return true;
 }
 
-bool Session::run_for(double seconds) {
-  const auto count = std::llround(seconds / world_->time_step());
-  return steps(static_cast<std::uint64_t>(std::max(count, 1LL)));
+std::uint64_t Session::steps_in(double seconds) const {
+  return static_cast<std::uint64_t>(std::max(std::llround(seconds / world_->time_step()), 1LL));
 }
+
+bool Session::run_for(double seconds) { return steps(steps_in(seconds)); }
 
 bool Session::until(const std::function<bool()>& condition,
                     double watch,
@@ -212,32 +232,34 @@ bool Session::until(const std::function<bool()>& condition,
                     FailureKind kind,
                     const std::string& message) {
   const double start = world_->time();
-  const auto stride =
-      static_cast<std::uint64_t>(std::max(1.0, std::round(watch / world_->time_step())));
   while (!condition()) {
     if (world_->time() - start > limit) return fail(kind, message);
-    if (!steps(stride)) return false;
+    if (!steps(steps_in(watch))) return false;
   }
   return true;
 }
 
 bool Session::rest(double limit) {
+  return comes_to_rest(limit) || fail(FailureKind::did_not_rest,
+                                      "the grains were still moving after " + number(limit) + " s");
+}
+
+bool Session::comes_to_rest(double limit) {
   constexpr double hold = 0.05;   // s, experiments' definition of rest
   constexpr double watch = 2e-3;  // s
   const double quiet = 1e-4 * grain_mass() * norm(world_->gravity()) * grain().diameter;
-  double since = world_->time();
-  const bool rested = until(
-      [&] {
-        const auto grains = static_cast<double>(std::max<std::size_t>(1, world_->grain_count()));
-        if (world_->visible_energy() / grains >= quiet) since = world_->time();
-        return world_->time() - since >= hold;
-      },
-      watch,
-      limit,
-      FailureKind::did_not_rest,
-      "the grains were still moving after " + number(limit) + " s");
-  if (rested) overlap_at_rest_ = std::max(overlap_at_rest_, world_->largest_overlap());
-  return rested;
+  const double start = world_->time();
+  double since = start;
+  const auto at_rest = [&] {
+    const auto grains = static_cast<double>(std::max<std::size_t>(1, world_->grain_count()));
+    if (world_->visible_energy() / grains >= quiet) since = world_->time();
+    return world_->time() - since >= hold;
+  };
+  while (!at_rest()) {
+    if (world_->time() - start > limit || !steps(steps_in(watch))) return false;
+  }
+  overlap_at_rest_ = std::max(overlap_at_rest_, world_->largest_overlap());
+  return true;
 }
 
 void Session::stage(std::string_view name) {

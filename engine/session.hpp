@@ -6,6 +6,7 @@
 #include <concepts>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,8 @@ class Session {
   /// Waits until the bed is at rest: mean kinetic energy per grain, the spin of spheres left out,
   /// below 1e-4 m g d for 0.05 s.
   bool rest(double limit);
+  /// The same where it is no failure that the bed still moves at the limit: false then, too.
+  bool comes_to_rest(double limit);
 
   /// Marks the end of a part of the protocol: a frame with that name.
   void stage(std::string_view name);
@@ -76,11 +79,13 @@ class Session {
   [[nodiscard]] std::uint64_t left_the_room() const { return left_; }
 
   bool fail(FailureKind kind, const std::string& message);
+  [[nodiscard]] bool failed() const { return failure_.has_value(); }
   [[nodiscard]] Failure failure() const;
   [[nodiscard]] Effort effort() const;
 
  private:
   bool steps(std::uint64_t count);
+  [[nodiscard]] std::uint64_t steps_in(double seconds) const;
   bool check();
   void emit(std::string_view stage);
 
@@ -102,9 +107,17 @@ class Session {
   std::vector<FrameGrain> frame_grains_;
 };
 
-/// What an experiment returns: the values of its observables in the order of its table, or nothing
-/// when the session failed.
-using Readings = std::optional<std::vector<double>>;
+/// The value of an observable, SI, or why it could not be read.
+using Reading = Result<double, std::string>;
+
+/// What an experiment returns: a reading for each of its observables in the order of its table, or
+/// nothing when the session failed.
+using Readings = std::optional<std::vector<Reading>>;
+
+/// The observations of an experiment, or a failure where none of its observables could be read.
+Outcome outcome_of(const Readings& readings,
+                   std::span<const ObservableInfo> observables,
+                   const Session& session);
 
 /// Problems of a trial that need no run to be seen; empty when there are none.
 std::string check(const ExperimentInfo& info, const Trial& trial);
@@ -161,15 +174,7 @@ Evaluation conduct(const Trial& trial, const Run& run) {
   }
   const Readings readings = E::run(settings, session);
   evaluation.effort = session.effort();
-  if (!readings) {
-    evaluation.outcome = session.failure();
-    return evaluation;
-  }
-  std::vector<Observation> observations;
-  for (std::size_t i = 0; i < E::observables.size(); ++i) {
-    observations.push_back({std::string(E::observables[i].name), (*readings)[i]});
-  }
-  evaluation.outcome = std::move(observations);
+  evaluation.outcome = outcome_of(readings, E::observables, session);
   return evaluation;
 }
 

@@ -225,7 +225,8 @@ Readings Compression::run(const Settings& s, Session& session) {
     return {};
   }
   const double largest = *start - loading.height.back();
-  return std::vector{0.75 * s.stress * *depth / (*quarter - *full), (*start - *end) / largest};
+  return std::vector<Reading>{0.75 * s.stress * *depth / (*quarter - *full),
+                              (*start - *end) / largest};
 }
 
 constexpr auto settings = with_conditions(Compression::fields);

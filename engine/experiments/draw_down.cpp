@@ -8,7 +8,7 @@
 /// discharge_rate: slope of the straight line through the discharged mass against time between 20
 /// and 70 % of the final one, over the slot's length. drain_angle: mean slope of the two surfaces,
 /// each a straight line through its height between 20 and 80 % of the way from the slot to the end,
-/// as far as the filling's own surface is out of reach.
+/// where grains cover the floor and as far as the filling's own surface is out of reach.
 ///
 /// Source: the draw-down test as in Rackl & Hanley 2017, Powder Technology 307, 73-83; steady flow
 /// from a slot: Beverloo, Leniger & van de Velde 1961, Chem. Eng. Sci. 15, 260-269.
@@ -98,6 +98,8 @@ struct DrawDown {
   static Readings run(const Settings& s, Session& session);
 };
 
+constexpr double rest_limit = 10.0;  // s, of what stays when the flow has ended
+
 /// From an edge of the slot to the end of the silo, m.
 double floor_beside(const DrawDown::Settings& s) { return 0.5 * (s.length - s.slot); }
 
@@ -105,6 +107,7 @@ double floor_beside(const DrawDown::Settings& s) { return 0.5 * (s.length - s.sl
 struct Discharge {
   std::vector<double> time;  ///< s
   std::vector<double> mass;  ///< kg
+  bool at_rest = false;      ///< what stays is, at the end
 };
 
 bool fill(const DrawDown::Settings& s, Session& session) {
@@ -117,7 +120,7 @@ bool fill(const DrawDown::Settings& s, Session& session) {
   return true;
 }
 
-/// Follows the discharged mass until next to nothing passes and all is at rest.
+/// Follows the discharged mass until next to nothing passes, and waits for what stays to rest.
 std::optional<Discharge> empty(Session& session) {
   constexpr double patience = 0.25;    // s
   constexpr double trickle = 1e-3;     // of the filling, in that time
@@ -140,10 +143,11 @@ std::optional<Discharge> empty(Session& session) {
                      watch,
                      flow_limit,
                      FailureKind::did_not_rest,
-                     "grains were still flowing after 30 s") ||
-      !session.rest(10.0)) {
+                     "grains were still flowing after 30 s")) {
     return {};
   }
+  discharge.at_rest = session.comes_to_rest(rest_limit);
+  if (session.failed()) return {};
   discharge.time.push_back(world.time() - start);
   discharge.mass.push_back(filling - held());
   return discharge;
@@ -168,7 +172,7 @@ bool ran_empty(const DrawDown::Settings& s, Session& session, const Discharge& d
 }
 
 /// Mass per time between 20 and 70 % of what was discharged, kg/s.
-std::optional<double> flow(Session& session, const Discharge& discharge) {
+Reading flow(const Discharge& discharge) {
   constexpr double from = 0.2, to = 0.7;
   constexpr std::size_t fewest = 10;  // samples of a line
   constexpr double steady = 0.05;     // rms from the line over the mass discharged
@@ -181,8 +185,7 @@ std::optional<double> flow(Session& session, const Discharge& discharge) {
     mass.push_back(discharge.mass[i]);
   }
   if (time.size() < fewest) {
-    session.fail(FailureKind::not_observed, "too little was discharged to read a rate");
-    return {};
+    return Unexpected{std::string("too little was discharged to read a rate")};
   }
   const LineFit line = fit_line(time, mass);
   double off = 0.0;
@@ -190,15 +193,14 @@ std::optional<double> flow(Session& session, const Discharge& discharge) {
     off += std::pow(mass[i] - line.intercept - line.slope * time[i], 2.0);
   }
   if (std::sqrt(off / static_cast<double>(time.size())) > steady * total) {
-    session.fail(FailureKind::not_observed, "the flow was not steady: it halted on the way");
-    return {};
+    return Unexpected{std::string("the flow was not steady: it halted on the way")};
   }
   return line.slope;
 }
 
 /// Tangent of the slope that stands on one side of the slot; `side` is -1 (left) or 1.
-std::optional<double> slope(const DrawDown::Settings& s, Session& session, double side) {
-  constexpr std::size_t fewest = 10;  // places of a line: a fifth of the floor
+Reading slope(const DrawDown::Settings& s, Session& session, double side) {
+  constexpr std::size_t fewest = 10;  // covered places of a line: a fifth of the floor
   const double d = session.grain().diameter;
   const double run = floor_beside(s);
   const double edge = 0.5 * (s.length + side * s.slot);
@@ -213,21 +215,31 @@ std::optional<double> slope(const DrawDown::Settings& s, Session& session, doubl
       std::ranges::find_if(surface, [&](const SurfaceHeight& p) { return p.height > s.depth - d; });
   surface.erase(level, surface.end());
   const SurfaceProfile covered = covered_places(surface);
-  if (covered.size() < std::max(fewest, surface.size())) {
-    session.fail(FailureKind::not_observed,
-                 "no slope stands beside the slot: of " + std::to_string(surface.size()) +
-                     " places below the level surface " + std::to_string(covered.size()) +
-                     " are covered with grains");
-    return {};
+  if (covered.size() < fewest) {
+    return Unexpected{"no slope stands beside the slot: of " + std::to_string(surface.size()) +
+                      " places below the level surface " + std::to_string(covered.size()) +
+                      " are covered with grains"};
   }
-  const LineFit line = line_through(surface);
-  if (const double off = roughness(surface, line); off > d) {
-    session.fail(FailureKind::not_observed,
-                 "the surface beside the slot is " + millimetres(off) +
-                     " off a straight line, more than a grain");
-    return {};
+  // Where grains slip and roll with ease, the foot of the slope stands away from the slot.
+  const LineFit line = line_through(covered);
+  if (const double off = roughness(covered, line); off > d) {
+    return Unexpected{"the surface beside the slot is " + millimetres(off) +
+                      " off a straight line, more than a grain"};
   }
   return side * line.slope;
+}
+
+/// Mean of the two slopes, rad.
+Reading drain_angle(const DrawDown::Settings& s, Session& session, const Discharge& discharge) {
+  if (!discharge.at_rest) {
+    return Unexpected{"what stays was still moving after " +
+                      std::to_string(std::lround(rest_limit)) + " s"};
+  }
+  const Reading left = slope(s, session, -1.0);
+  if (!left) return left;
+  const Reading right = slope(s, session, 1.0);
+  if (!right) return right;
+  return 0.5 * (std::atan(*left) + std::atan(*right));
 }
 
 std::string DrawDown::refuse(const Settings& s, double largest_grain_diameter) {
@@ -262,12 +274,9 @@ Readings DrawDown::run(const Settings& s, Session& session) {
   if (!discharge) return {};
   session.stage("emptied");
   if (!ran_empty(s, session, *discharge)) return {};
-  const auto rate = flow(session, *discharge);
-  if (!rate) return {};
-  const auto one = slope(s, session, -1.0);
-  const auto other = one ? slope(s, session, 1.0) : std::nullopt;
-  if (!other) return {};
-  return std::vector{*rate / s.width, 0.5 * (std::atan(*one) + std::atan(*other))};
+  const Reading flowing = flow(*discharge);
+  const Reading rate = flowing ? Reading(*flowing / s.width) : flowing;
+  return std::vector{rate, drain_angle(s, session, *discharge)};
 }
 
 constexpr auto settings = with_conditions(DrawDown::fields);

@@ -101,7 +101,7 @@ Readings Drop::run(const Settings& s, Session& session) {
     return {};
   }
   session.stage("apex");
-  return std::vector{std::sqrt(apex / s.height)};
+  return std::vector<Reading>{std::sqrt(apex / s.height)};
 }
 
 constexpr auto settings = with_conditions(Drop::fields);

@@ -206,7 +206,7 @@ Readings Drum::read(const Settings& s, Session& session) {
                      std::to_string(100.0 * grip / looks) + " % of its speed");
     return {};
   }
-  return std::vector{angles / looks};
+  return std::vector<Reading>{angles / looks};
 }
 
 Readings Drum::run(const Settings& s, Session& session) {

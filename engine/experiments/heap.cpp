@@ -182,7 +182,7 @@ Readings Heap::read(const Settings& s, Session& session) {
                      " off a straight line, more than a grain");
     return {};
   }
-  return std::vector{std::atan(-line.slope)};
+  return std::vector<Reading>{std::atan(-line.slope)};
 }
 
 Readings Heap::run(const Settings& s, Session& session) {

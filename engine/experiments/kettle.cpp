@@ -287,7 +287,7 @@ Readings Kettle::run(const Settings& s, Session& session) {
     session.fail(FailureKind::did_not_fill, "the kettle is not full to its rim");
     return {};
   }
-  return std::vector{mass_inside(s, session.world()) / volume(s)};
+  return std::vector<Reading>{mass_inside(s, session.world()) / volume(s)};
 }
 
 constexpr auto settings = with_conditions(Kettle::fields);

@@ -192,7 +192,7 @@ Readings TiltingBox::tilt(const Settings& s, Session& session) {
     return {};
   }
   session.stage("sliding");
-  return std::vector{slid, onset};
+  return std::vector<Reading>{slid, onset};
 }
 
 Readings TiltingBox::run(const Settings& s, Session& session) {

@@ -77,7 +77,12 @@ Mean mean_of(const std::vector<Evaluation>& runs, std::size_t observable) {
     if (const auto* failure = std::get_if<engine::Failure>(&run.outcome)) {
       mean.failure = failure->message;
     } else {
-      values.push_back(std::get<std::vector<engine::Observation>>(run.outcome)[observable].value);
+      const auto& seen = std::get<std::vector<engine::Observation>>(run.outcome)[observable];
+      if (seen.unread.empty()) {
+        values.push_back(seen.value);
+      } else {
+        mean.failure = seen.unread;
+      }
     }
   }
   if (values.empty()) return mean;

@@ -139,7 +139,14 @@ std::vector<MeanObservation> means(const Replicates& replicates) {
     const double error = count > 1.0 ? std::sqrt(squares / (count - 1.0) / count)
                                      : std::numeric_limits<double>::quiet_NaN();
     const engine::ObservableInfo& observable = info->observables[k];
-    result.push_back({std::string(observable.name), mean, error, observable.unit});
+    MeanObservation& seen =
+        result.emplace_back(std::string(observable.name), mean, error, observable.unit);
+    for (const Evaluation& evaluation : replicates.evaluations) {
+      const std::string& why =
+          std::get<std::vector<engine::Observation>>(evaluation.outcome).at(k).unread;
+      if (why.empty() || !seen.unread.empty()) continue;
+      seen.unread = "seed " + std::to_string(evaluation.trial.seed) + ": " + why;
+    }
   }
   return result;
 }
@@ -227,7 +234,9 @@ void print_text(const Replicates& replicates) {
   std::cout << "\n\n";
   TextTable observations({"observable", "value"});
   for (const MeanObservation& seen : replicates.observations) {
-    observations.row({seen.name, with_error(seen.value, seen.standard_error, seen.unit)});
+    observations.row({seen.name,
+                      seen.unread.empty() ? with_error(seen.value, seen.standard_error, seen.unit)
+                                          : "not read"});
   }
   const engine::Effort effort = replicates.effort();
   TextTable facts({"run", ""});
@@ -242,6 +251,9 @@ void print_text(const Replicates& replicates) {
   facts.row({"largest overlap / radius", number_text(effort.largest_overlap, 2)});
   facts.row({"overlap at rest / radius", number_text(effort.overlap_at_rest, 2)});
   std::cout << observations.str() << "\n";
+  for (const MeanObservation& seen : replicates.observations) {
+    if (!seen.unread.empty()) std::cout << seen.name << ", " << seen.unread << "\n\n";
+  }
   if (experiment.fidelity == engine::Fidelity::draft) {
     const engine::ExperimentInfo& info = *engine::find_experiment(experiment.name);
     for (const auto& seen : info.observables) {

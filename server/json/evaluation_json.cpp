@@ -149,7 +149,9 @@ engine::Outcome read_outcome(const Json& json) {
   if (failure != json.end()) return read_failure(*failure);
   std::vector<Observation> observations;
   for (const Json& entry : json.at("observations")) {
-    observations.push_back({entry.at("name").get<std::string>(), number_of(entry.at("value"))});
+    observations.push_back({entry.at("name").get<std::string>(),
+                            number_of(entry.at("value")),
+                            entry.value("unread", std::string())});
   }
   return observations;
 }
@@ -219,7 +221,9 @@ std::string print_answer(const Evaluation& evaluation) {
   } else {
     Json observations = Json::array();
     for (const Observation& seen : std::get<std::vector<Observation>>(evaluation.outcome)) {
-      observations.push_back({{"name", seen.name}, {"value", number_or_null(seen.value)}});
+      Json& entry = observations.emplace_back(
+          Json{{"name", seen.name}, {"value", number_or_null(seen.value)}});
+      if (!seen.unread.empty()) entry["unread"] = seen.unread;
     }
     document["observations"] = std::move(observations);
   }

@@ -113,11 +113,12 @@ std::string print_replicates(const Replicates& replicates, std::string_view engi
   } else {
     document["observations"] = Json::array();
     for (const MeanObservation& seen : replicates.observations) {
-      document["observations"].push_back(
-          {{"name", seen.name},
-           {"value", number_or_null(seen.value / seen.unit.factor)},
-           {"standard_error", number_or_null(seen.standard_error / seen.unit.factor)},
-           {"unit", seen.unit.symbol}});
+      Json& entry = document["observations"].emplace_back(
+          Json{{"name", seen.name},
+               {"value", number_or_null(seen.value / seen.unit.factor)},
+               {"standard_error", number_or_null(seen.standard_error / seen.unit.factor)},
+               {"unit", seen.unit.symbol}});
+      if (!seen.unread.empty()) entry["unread"] = seen.unread;
     }
     if (experiment.fidelity == engine::Fidelity::draft) {
       document["draft_less_standard"] = draft_json(*engine::find_experiment(experiment.name));

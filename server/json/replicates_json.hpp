@@ -14,9 +14,10 @@ namespace repose::server {
 /// What the replicates say of one observable together.
 struct MeanObservation {
   std::string name;
-  double value = 0.0;           ///< SI; mean over the replicates
+  double value = 0.0;           ///< SI; mean over the replicates; NaN where one was not read
   double standard_error = 0.0;  ///< SI; of that mean; NaN for one replicate
   engine::Unit unit;            ///< in which it is printed
+  std::string unread = {};      ///< the first seed that was not read, and why
 };
 
 struct Replicates {

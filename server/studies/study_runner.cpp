@@ -55,7 +55,12 @@ void add(Sample& sample, const Question& question, const Evaluation& evaluation)
     return;
   }
   for (const auto& seen : std::get<std::vector<engine::Observation>>(evaluation.outcome)) {
-    if (seen.name == question.observable) sample.values.push_back(seen.value / question.factor);
+    if (seen.name != question.observable) continue;
+    if (seen.unread.empty()) {
+      sample.values.push_back(seen.value / question.factor);
+    } else if (sample.failed++ == 0) {
+      sample.failure = seen.unread;
+    }
   }
 }
 

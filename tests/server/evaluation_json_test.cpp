@@ -112,6 +112,19 @@ TEST_CASE("an observation that is no number is null and reads back as none", "[s
   CHECK(std::isnan(std::get<std::vector<engine::Observation>>(again.outcome).at(0).value));
 }
 
+TEST_CASE("why an observable was not read reads back with it", "[server]") {
+  engine::Evaluation evaluation{kettle(), {}, {}};
+  evaluation.outcome =
+      std::vector<engine::Observation>{{"rate", 1.5}, {"angle", std::nan(""), "no slope stands"}};
+  const std::string text = print_answer(evaluation);
+  const engine::Evaluation again = parse_answer(kettle(), text);
+  const auto& seen = std::get<std::vector<engine::Observation>>(again.outcome);
+  CHECK(seen.at(0).unread.empty());
+  CHECK(std::isnan(seen.at(1).value));
+  CHECK(seen.at(1).unread == "no slope stands");
+  CHECK(print_answer(again) == text);
+}
+
 TEST_CASE("every failure reads back with its message and its time", "[server]") {
   for (std::size_t i = 0; i < engine::failure_kind_names.size(); ++i) {
     engine::Evaluation evaluation{kettle(), {}, {}};
