@@ -1,4 +1,4 @@
-"""The six bulk experiments as LIGGGHTS and LAMMPS are given them, and how their answer is read.
+"""The seven experiments as LIGGGHTS and LAMMPS are given them, and how their answer is read.
 
 Walls: meshes in LIGGGHTS, regions in LAMMPS. Type 1 is grain's stuff, type 2 wall's; `rough` and
 `wall` are LAMMPS' laws for the two. A plate of LAMMPS is 2 mm thick, ours and LIGGGHTS' are thin.
@@ -13,7 +13,7 @@ from walls import GRAN, disc, lying, meshes, plate, rain, region, tube
 STEP = time_step(SOFT)
 G = 9.81  # m/s2
 ROUGH = ('variable rough string "granular hertz/material ${wallyoung} 0.4811323444 0.25 damping '
-         'tsuji tangential mindlin ${wallshear} ${tangent} 0.45 rolling sds ${roll} 0.0 ${rolling}"\n')
+         'tsuji tangential mindlin ${wallshear} ${tangent} ${friction} rolling sds ${roll} 0.0 ${rolling}"\n')
 
 
 def steps(seconds):
@@ -25,7 +25,7 @@ class Apparatus:
 
     boundary = "f f f"
     skins = {"liggghts": 0.0015, "lammps": 0.0015}  # m
-    rolling = 0.05
+    physics = {}  # variables of the deck other than the reference grain's
     frame_interval = None  # s, of repose's frames that are read again; None: the last one only
 
     def __init__(self, settings, seed):
@@ -46,8 +46,7 @@ class Apparatus:
         return {"boundary": self.boundary, "space": f"read_data {code}.data", "scene": scene}
 
     def variables(self, code):
-        return {"modulus": SOFT, "dt": repr(STEP), "skin": self.skins[code],
-                "rolling": self.rolling}
+        return {"modulus": SOFT, "dt": repr(STEP), "skin": self.skins[code], **self.physics}
 
     def struck_off(self, level):
         return (f"run {steps(self.settling)}\n"
@@ -57,6 +56,33 @@ class Apparatus:
     @staticmethod
     def dump(columns="id x y z vx", every=1):
         return f"dump frames all custom {every} frames.dump {columns}\n"
+
+
+class Drop(Apparatus):
+    """One grain onto a wall."""
+
+    read_frames = None
+
+    def grains(self):
+        high = self.s["height"] + RADIUS
+        return [(0.0, 0.0, high)], [(-0.05, 0.05), (-0.05, 0.05), (-0.02, high + 0.02)]
+
+    def prepare(self, folder):
+        write_bed(folder / "liggghts.data", *self.grains(), 2)
+        write_bed(folder / "lammps.data", *self.grains(), 1)
+
+    def meshes(self):
+        return {}
+
+    def scene(self, code):
+        law = {"liggghts": f"{GRAN} primitive type 2 zplane 0.0",
+               "lammps": "${wall} zplane 0.0 NULL"}[code]
+        there_and_back = 2 * math.sqrt(2 * self.s["height"] / G)  # s
+        return (f"fix floor all wall/gran {law}\n{self.dump(every=steps(5e-4))}"
+                f"run {steps(there_and_back)}")
+
+    def read(self, frames, _text):
+        return reading.drop([grains[1][2] - RADIUS for _, grains in frames], self.s)
 
 
 def fill_number(volume):
@@ -388,5 +414,5 @@ def series(text, mark="SERIES"):
     return list(rows.values())
 
 
-ALL = {"kettle": Kettle, "tilting_box": TiltingBox, "heap": Heap, "draw_down": DrawDown,
-       "drum": Drum, "compression": Compression}
+ALL = {"drop": Drop, "kettle": Kettle, "tilting_box": TiltingBox, "heap": Heap,
+       "draw_down": DrawDown, "drum": Drum, "compression": Compression}

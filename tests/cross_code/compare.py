@@ -76,7 +76,8 @@ def run_peer(code, program, setup, folder):
     words = ["stdbuf", "-o0", program, "-in", f"{code}.in", "-log", "none"]
     for name, value in setup.variables(code).items():
         words += ["-var", name, str(value)]
-    done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
+    # A code that stops on its own assertion may print what is no text.
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, errors="replace")
     if done.returncode != 0:
         told = [line for line in done.stdout.splitlines() if line.startswith("ERROR")]
         print(f"  {code} stopped and is left out: {' '.join(told) or done.stderr[-500:]}",

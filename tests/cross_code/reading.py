@@ -97,6 +97,12 @@ def surface_along_x(grains, radius, width, low, high, places, points):
     return profile
 
 
+def drop(heights, s):
+    """Of the underside of the grain, every half millisecond."""
+    lowest = heights.index(min(heights))
+    return {"restitution": math.sqrt(max(heights[lowest:]) / s["height"])}
+
+
 def kettle(grains, s):
     inside = [g for g in grains.values()
               if 0 < g[2] < s["height"] and math.hypot(g[0], g[1]) < 0.5 * s["diameter"]]

@@ -4,7 +4,7 @@ import random
 
 from scenes import RADIUS
 
-GRAN = "model hertz tangential history rolling_friction cdt"
+GRAN = "model ${contacts}"
 
 
 def rain(number, low, high, seed, fits=lambda x, y, z: True, pitch=2.5):
