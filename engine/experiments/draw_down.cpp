@@ -8,7 +8,8 @@
 /// discharge_rate: slope of the straight line through the discharged mass against time between 20
 /// and 70 % of the final one, over the slot's length. drain_angle: mean slope of the two surfaces,
 /// each a straight line through its height between 20 and 80 % of the way from the slot to the end,
-/// where grains cover the floor and as far as the filling's own surface is out of reach.
+/// where grains cover the floor and as far as the filling's own surface is out of reach; zero for a
+/// side where less than a fifth of the floor stays covered, for nothing stands there.
 ///
 /// Source: the draw-down test as in Rackl & Hanley 2017, Powder Technology 307, 73-83; steady flow
 /// from a slot: Beverloo, Leniger & van de Velde 1961, Chem. Eng. Sci. 15, 260-269.
@@ -91,7 +92,10 @@ struct DrawDown {
                      unit::kilogram_per_second_metre,
                      "mass that passes in a unit of time through a unit of the slot's length",
                      0.02},
-      ObservableInfo{"drain_angle", unit::degree, "mean slope of the two surfaces that stay", 0.05},
+      ObservableInfo{"drain_angle",
+                     unit::degree,
+                     "mean slope of the two surfaces that stay; 0 if the silo runs empty",
+                     0.05},
   };
 
   static std::string refuse(const Settings& s, double largest_grain_diameter);
@@ -200,21 +204,26 @@ Reading flow(const Discharge& discharge) {
 
 /// Tangent of the slope that stands on one side of the slot; `side` is -1 (left) or 1.
 Reading slope(const DrawDown::Settings& s, Session& session, double side) {
-  constexpr std::size_t fewest = 10;  // covered places of a line: a fifth of the floor
+  constexpr std::size_t places = 30;
+  constexpr std::size_t fewest = 10;  // that are covered, for a line: a fifth of the floor
   const double d = session.grain().diameter;
   const double run = floor_beside(s);
   const double edge = 0.5 * (s.length + side * s.slot);
   const double inner = edge + side * 0.2 * run;
   const double outer = edge + side * 0.8 * run;
-  SurfaceProfile surface = straight_profile(
-      session.world(),
-      {.from = std::min(inner, outer), .to = std::max(inner, outer), .count = 30, .points = 60});
+  SurfaceProfile surface = straight_profile(session.world(),
+                                            {.from = std::min(inner, outer),
+                                             .to = std::max(inner, outer),
+                                             .count = places,
+                                             .points = 60});
   if (side < 0.0) std::ranges::reverse(surface);
   // The slope ends where it meets the level surface that was struck off.
   const auto level =
       std::ranges::find_if(surface, [&](const SurfaceHeight& p) { return p.height > s.depth - d; });
   surface.erase(level, surface.end());
   const SurfaceProfile covered = covered_places(surface);
+  const bool runs_to_the_end = surface.size() == places;
+  if (covered.size() < fewest && runs_to_the_end) return 0.0;
   if (covered.size() < fewest) {
     return Unexpected{"no slope stands beside the slot: of " + std::to_string(surface.size()) +
                       " places below the level surface " + std::to_string(covered.size()) +
@@ -231,15 +240,16 @@ Reading slope(const DrawDown::Settings& s, Session& session, double side) {
 
 /// Mean of the two slopes, rad.
 Reading drain_angle(const DrawDown::Settings& s, Session& session, const Discharge& discharge) {
-  if (!discharge.at_rest) {
-    return Unexpected{"what stays was still moving after " +
-                      std::to_string(std::lround(rest_limit)) + " s"};
-  }
   const Reading left = slope(s, session, -1.0);
   if (!left) return left;
   const Reading right = slope(s, session, 1.0);
   if (!right) return right;
-  return 0.5 * (std::atan(*left) + std::atan(*right));
+  const double angle = 0.5 * (std::atan(*left) + std::atan(*right));
+  if (angle != 0.0 && !discharge.at_rest) {
+    return Unexpected{"what stays was still moving after " +
+                      std::to_string(std::lround(rest_limit)) + " s"};
+  }
+  return angle;
 }
 
 std::string DrawDown::refuse(const Settings& s, double largest_grain_diameter) {

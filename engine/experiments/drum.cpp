@@ -1,7 +1,8 @@
 /// Drum: a ribbed drum turns about its level axis; the slope of the surface that flows is read.
 ///
 /// Protocol: a drum, endless (periodic) along its axis, its mantle and ribs covered with grains'
-/// stuff, is filled to `fill` of its volume with a bed and comes to rest. It turns at `speed`.
+/// stuff, is filled to `fill` of its volume with a bed and comes to rest, or has five seconds for
+/// it after either half. It turns at `speed`.
 /// After 0.35 turns and at least a second the slope of the surface over the middle 55 % of the
 /// radius is read every hundredth of a second for two seconds. dynamic_angle: its mean.
 ///
@@ -156,7 +157,8 @@ bool Drum::fill_drum(const Settings& s, Session& session) {
                               std::to_string(wanted) + " asked for");
     }
     put += added;
-    if (!session.rest(5.0)) return false;
+    session.comes_to_rest(5.0);  // or not: turning forgets how it lay
+    if (session.failed()) return false;
   }
   session.stage("filled");
   return true;

@@ -2,6 +2,8 @@
 #include "engine/session.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include <catch2/catch.hpp>
@@ -110,4 +112,26 @@ TEST_CASE("what grains at rest overlap is told apart from what they do on impact
       std::pow(0.75 * weight / (elastic.modulus * std::sqrt(radius)), 2.0 / 3.0) / radius;
   CHECK(effort.overlap_at_rest == Approx(overlap).epsilon(0.02));
   CHECK(effort.largest_overlap > 5.0 * effort.overlap_at_rest);
+}
+
+TEST_CASE("an observable that could not be read leaves the others, and none is a failure",
+          "[engine]") {
+  constexpr std::array observables{ObservableInfo{"rate", unit::one, ""},
+                                   ObservableInfo{"angle", unit::degree, ""}};
+  const Trial trial = kettle_trial();
+  const Run run;
+  const Session session(trial, run);
+  const Reading why = Unexpected{std::string("no slope stands")};
+
+  const Outcome one = outcome_of(std::vector<Reading>{2.5, why}, observables, session);
+  const auto& seen = std::get<std::vector<Observation>>(one);
+  REQUIRE(seen.size() == 2);
+  CHECK(seen[0].value == 2.5);
+  CHECK(seen[0].unread.empty());
+  CHECK(std::isnan(seen[1].value));
+  CHECK(seen[1].unread == "no slope stands");
+
+  const Outcome none = outcome_of(std::vector<Reading>{why, why}, observables, session);
+  CHECK(std::get<Failure>(none).kind == FailureKind::not_observed);
+  CHECK(std::get<Failure>(none).message == "no slope stands");
 }
