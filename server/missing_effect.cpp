@@ -7,6 +7,7 @@
 
 #include "calibrator/comparison.hpp"
 #include "calibrator/diagnosis/objection.hpp"
+#include "calibrator/diagnosis/tolerance.hpp"
 #include "engine/catalogue.hpp"
 #include "engine/evaluate.hpp"
 #include "server/jobs/clock.hpp"
@@ -65,6 +66,23 @@ std::vector<engine::Evaluation> evaluations_of(const std::vector<db::UsedEvaluat
   return evaluations;
 }
 
+/// Why the tolerances are not of this study: one names an observable that it does not measure.
+std::optional<Refusal> unmeasured(const Calibration& calibration,
+                                  const calibrator::Tolerances& stated) {
+  std::vector<std::string> measured;
+  for (const calibrator::Measurement& measurement : calibration.measurements) {
+    std::string name = calibrator::observable_name(measurement);
+    if (std::ranges::find(measured, name) == measured.end()) measured.push_back(std::move(name));
+  }
+  for (const auto& [name, spread] : stated) {
+    if (std::ranges::find(measured, name) != measured.end()) continue;
+    return refusal(
+        Refusal::Kind::invalid,
+        "a tolerance of " + name + " changes nothing: the study measures " + listed(measured));
+  }
+  return std::nullopt;
+}
+
 /// Why a model cannot be extended by that.
 Refusal no_extension(const std::vector<calibrator::Suspect>& suspects, const std::string& effect) {
   std::vector<std::string> names;
@@ -90,6 +108,7 @@ Answer<std::string> compare(const db::Store& store,
                             const calibrator::Tolerances& stated) {
   const auto own = finished(store, id);
   if (!own) return Unexpected{own.error()};
+  if (auto why = unmeasured(own->calibration, stated)) return Unexpected{*std::move(why)};
   std::optional<calibrator::Comparison> before;
   if (own->calibration.extends) {
     const auto parent = finished(store, own->calibration.extends->calibration);

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstdlib>
 #include <iostream>
 #include <string>
 #include <unistd.h>
@@ -8,6 +10,8 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
+#include "server/json/missing_effect_request.hpp"
+#include "server/json/place.hpp"
 #include "server/json/report_json.hpp"
 #include "server/service.hpp"
 
@@ -26,18 +30,26 @@ engine::Result<calibrator::Tolerances, InputError> read_tolerances(
     const std::vector<std::string>& texts) {
   calibrator::Tolerances tolerances;
   for (const std::string& text : texts) {
+    const auto wrong = [&](const std::string& what) {
+      return engine::Unexpected{InputError{"--tolerance " + text + ": " + what, {}}};
+    };
     const std::size_t split = text.find('=');
     char* end = nullptr;
     const double spread =
         split == std::string::npos ? -1.0 : std::strtod(text.c_str() + split + 1, &end);
-    if (end == nullptr || *end != '\0' || !(spread >= 0.0) || spread > 1.0) {
-      return engine::Unexpected{
-          InputError{"--tolerance " + text +
-                         ": write EXPERIMENT.OBSERVABLE=SHARE with a share from 0 to 1, for "
-                         "instance tilting_box.static_angle=0.1",
-                     {}}};
+    if (end == nullptr || end == text.c_str() + split + 1 || *end != '\0' || !(spread >= 0.0) ||
+        spread > 1.0) {
+      return wrong(
+          "write EXPERIMENT.OBSERVABLE=SHARE with a share from 0 to 1, for instance "
+          "tilting_box.static_angle=0.1");
     }
-    tolerances[text.substr(0, split)] = spread;
+    const std::string name = text.substr(0, split);
+    const std::vector<std::string>& names = observable_names();
+    if (std::ranges::find(names, name) == names.end()) {
+      return wrong("there is no such observable" + did_you_mean(name, names) + "; there are " +
+                   listed(names));
+    }
+    if (!tolerances.emplace(name, spread).second) return wrong(name + " has been given before");
   }
   return tolerances;
 }

@@ -12,7 +12,7 @@ namespace repose::server {
 
 namespace {
 
-std::vector<std::string> observable_names() {
+std::vector<std::string> names_of_observables() {
   std::vector<std::string> names;
   for (const engine::ExperimentInfo& experiment : engine::experiment_catalogue()) {
     for (const engine::ObservableInfo& observable : experiment.observables) {
@@ -25,7 +25,7 @@ std::vector<std::string> observable_names() {
 void read_tolerance(const std::string& name,
                     const Place& place,
                     calibrator::Tolerances& tolerances) {
-  static const std::vector<std::string> names = observable_names();
+  const std::vector<std::string>& names = observable_names();
   if (std::ranges::find(names, name) == names.end()) {
     place.complain("there is no such observable" + did_you_mean(name, names), listed(names));
     return;
@@ -57,6 +57,11 @@ engine::Result<T, Problems> parse_object(std::string_view text, const Reader& re
 }
 
 }  // namespace
+
+const std::vector<std::string>& observable_names() {
+  static const std::vector<std::string> names = names_of_observables();
+  return names;
+}
 
 std::string print_diagnosis_request(const calibrator::Tolerances& stated) {
   Json tolerances = Json::object();

@@ -5,12 +5,16 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "calibrator/diagnosis/diagnosis.hpp"
 #include "engine/result.hpp"
 #include "server/json/problem.hpp"
 
 namespace repose::server {
+
+/// "EXPERIMENT.OBSERVABLE" of the whole catalogue: what a tolerance can be of.
+const std::vector<std::string>& observable_names();
 
 /// {"tolerances": {"EXPERIMENT.OBSERVABLE": SHARE}}, as it is kept beside a diagnosis.
 std::string print_diagnosis_request(const calibrator::Tolerances& stated);

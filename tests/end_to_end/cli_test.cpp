@@ -195,6 +195,31 @@ TEST_CASE("help and version are no errors", "[end_to_end]") {
   CHECK_THAT(run("--version").output, Contains("repose 0."));
 }
 
+TEST_CASE("a tolerance of what is not measured is refused, never left out", "[end_to_end]") {
+  const TemporaryFolder folder;
+  const std::string database = " --db " + (folder.path / "a.db").string();
+  const std::string study = (folder.path / "study.json").string();
+  std::ofstream(study) << small_study;
+  REQUIRE(run("calibrate --no-pictures " + study + database).exit_code == 0);
+  CHECK(run("compare 1 --tolerance drop.restitution=0.2" + database).exit_code == 0);
+  const auto refused = [&](const std::string& words) {
+    const Ran ran = run(words + database, "&1");
+    CHECK(ran.exit_code == 2);
+    return ran.output;
+  };
+  for (const char* command : {"compare 1", "diagnose 1"}) {
+    CHECK_THAT(refused(std::string(command) + " --tolerance drop.rest=0.2"),
+               Contains("there is no such observable") && Contains("drop.restitution"));
+    CHECK_THAT(refused(std::string(command) + " --tolerance drop.restitution="),
+               Contains("EXPERIMENT.OBSERVABLE=SHARE"));
+    CHECK_THAT(refused(std::string(command) +
+                       " --tolerance drop.restitution=0.1 --tolerance drop.restitution=0.2"),
+               Contains("given before"));
+  }
+  CHECK_THAT(refused("compare 1 --tolerance heap.heap_angle=0.1"),
+             Contains("the study measures drop.restitution"));
+}
+
 TEST_CASE("frames are written with an index", "[end_to_end][slow]") {
   const TemporaryFolder folder;
   const Ran ran = run("evaluate drop --fidelity draft --json --frames " + folder.path.string());
