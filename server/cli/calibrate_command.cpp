@@ -1,4 +1,5 @@
 #include <iostream>
+#include <optional>
 #include <string>
 #include <unistd.h>
 #include <utility>
@@ -7,6 +8,7 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
+#include "server/cli/output.hpp"
 #include "server/cli/progress.hpp"
 #include "server/cli/summary.hpp"
 #include "server/json/calibration_json.hpp"
@@ -44,7 +46,13 @@ Answer<std::string> run(const CalibrateCommand& command,
 
 std::filesystem::path report_path(const CalibrateCommand& command, std::int64_t id) {
   if (!command.report.empty()) return command.report;
-  return command.database.parent_path() / ("repose-report-" + std::to_string(id) + ".html");
+  return command.database.parent_path() / report_name(command.database, id);
+}
+
+/// What is wrong with the file that the report is to go to: said before hours of work, not after.
+std::optional<InputError> objection_to_report(const CalibrateCommand& command) {
+  if (command.report.empty()) return std::nullopt;  // where the database can be written, it can
+  return objection_to_file(command.report);
 }
 
 int stopped(const CalibrateCommand& command) {
@@ -58,6 +66,7 @@ int stopped(const CalibrateCommand& command) {
 
 int calibrate_text(const CalibrateCommand& command, const std::string& study) {
   const bool json = command.form == Form::json;
+  if (const auto why = objection_to_report(command)) return report_error(*why, json);
   const Interrupt interrupt;
   const auto answer = run(command, study, interrupt);
   if (!answer) {

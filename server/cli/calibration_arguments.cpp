@@ -9,6 +9,9 @@ constexpr const char* calibrate_footer =
     "Ctrl-C stops; the same command takes the calibration up where it was. Progress goes to\n"
     "standard error: a display that renews itself on a terminal, a line a batch elsewhere.";
 
+constexpr const char* report_help =
+    "Report (default: DATABASE-report-ID.html beside the database, of r.db r-report-1.html)";
+
 }  // namespace
 
 void add_calibrate(CLI::App& app, CalibrateCommand& options, Work& work) {
@@ -18,8 +21,7 @@ void add_calibrate(CLI::App& app, CalibrateCommand& options, Work& work) {
       ->type_name("STUDY.json");
   add_database(command, options.database);
   add_workers(command, options.workers);
-  command.add_option("--report", options.report, "Report (default: beside the database)")
-      ->type_name("FILE");
+  command.add_option("--report", options.report, report_help)->type_name("FILE");
   command.add_flag_callback(
       "--no-pictures",
       [&options] { options.pictures = false; },
@@ -57,8 +59,7 @@ void add_missing_effect(CLI::App& app, MissingEffectCommand& options, Work& work
   CLI::App& extend = *add("extend", "Add an effect to a model and calibrate it", extend_command);
   extend.add_option("--effect", options.effect, "Which; `repose diagnose` names them")->required();
   add_workers(extend, options.workers);
-  extend.add_option("--report", options.report, "Report (default: beside the database)")
-      ->type_name("FILE");
+  extend.add_option("--report", options.report, report_help)->type_name("FILE");
   extend.add_flag_callback(
       "--no-pictures", [&options] { options.pictures = false; }, "No pictures in the report");
 }
@@ -78,7 +79,10 @@ void add_report(CLI::App& app, ReportCommand& options, Work& work) {
   CLI::App& command = *app.add_subcommand("report", "Write the HTML report of a calibration");
   command.add_option("id", options.id, "Calibration")->required();
   add_database(command, options.database);
-  command.add_option("--output", options.output, "Report (default: repose-report-ID.html)")
+  command
+      .add_option("--output",
+                  options.output,
+                  "Report (default: DATABASE-report-ID.html, of r.db r-report-1.html)")
       ->type_name("FILE");
   command.add_flag_callback(
       "--no-pictures",

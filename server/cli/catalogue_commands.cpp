@@ -10,6 +10,7 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
+#include "server/cli/output.hpp"
 #include "server/cli/text_table.hpp"
 #include "server/json/catalogue_json.hpp"
 #include "server/json/place.hpp"
@@ -46,7 +47,9 @@ namespace {
 /// that an older program never undoes an edit.
 int write_schemas(const fs::path& folder) {
   for (const auto& [name, text] : generated_schemas()) {
-    fs::create_directories((folder / name).parent_path());
+    if (const auto why = make_folder((folder / name).parent_path())) {
+      return report_error(*why, false);
+    }
     write_file(folder / name, text);
     std::cout << (folder / name).string() << "\n";
   }

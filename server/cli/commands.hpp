@@ -36,7 +36,7 @@ struct CalibrateCommand {
   std::filesystem::path study;
   std::filesystem::path database;
   unsigned workers = 0;
-  std::filesystem::path report;  ///< file; empty: beside the database
+  std::filesystem::path report;  ///< file; empty: its usual name beside the database
   bool pictures = true;
   Form form = Form::text;
 };
@@ -111,7 +111,7 @@ int lineage_command(const LineageCommand& command);
 struct ReportCommand {
   std::int64_t id = 0;
   std::filesystem::path database;
-  std::filesystem::path output;  ///< file; empty: repose-report-ID.html in the working folder
+  std::filesystem::path output;  ///< file; empty: its usual name in the working folder
   bool pictures = true;
 };
 int report_command(const ReportCommand& command);

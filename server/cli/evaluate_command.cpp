@@ -21,6 +21,7 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
+#include "server/cli/output.hpp"
 #include "server/cli/reference_grain.hpp"
 #include "server/cli/text_table.hpp"
 #include "server/jobs/child.hpp"
@@ -277,6 +278,7 @@ int evaluate_command(const EvaluateCommand& command) {
   if (!trial) return report_error(trial.error(), json);
   std::optional<FrameFiles> files;
   if (!command.frames.empty()) {
+    if (const auto why = make_folder(command.frames)) return report_error(*why, json);
     files.emplace(command.frames, run_title(*trial));
   }
   const Interrupt interrupt;

@@ -7,6 +7,7 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
+#include "server/cli/output.hpp"
 #include "server/cli/summary.hpp"
 #include "server/cli/text_table.hpp"
 #include "server/json/report_json.hpp"
@@ -52,9 +53,8 @@ int report_command(const ReportCommand& command) {
   const auto document = read(*text);
   if (!document) return exit_code::failed;
   const auto path =
-      command.output.empty()
-          ? std::filesystem::path("repose-report-" + std::to_string(command.id) + ".html")
-          : command.output;
+      command.output.empty() ? report_name(command.database, command.id) : command.output;
+  if (const auto why = objection_to_file(path)) return report_error(*why, false);
   const Interrupt interrupt;
   write_report(*document, {path, command.database, command.pictures}, interrupt.token());
   if (interrupt.happened()) {

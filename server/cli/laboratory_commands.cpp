@@ -8,6 +8,7 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
+#include "server/cli/output.hpp"
 #include "server/cli/reference_grain.hpp"
 #include "server/cli/text_table.hpp"
 #include "server/json/laboratory_json.hpp"
@@ -119,12 +120,15 @@ int bench_fidelity_command(const LaboratoryCommand& command) {
 }
 
 int trends_command(const LaboratoryCommand& command) {
+  const auto folder = command.output.empty() ? std::filesystem::path(".") : command.output;
+  if (const auto why = make_folder(folder)) {
+    return report_error(*why, command.form == Form::json);
+  }
   const Interrupt interrupt;
   const Trends trends =
       with_workers(command, interrupt, [&](Workers& workers, const std::stop_token& stop) {
         return measure_trends(reference_grain(), reference_seeds, workers, stop, progress());
       });
-  if (!command.output.empty()) std::filesystem::create_directories(command.output);
   const std::string text = print_trends(trends);
   write_file(command.output / "trends.json", text + "\n");
   write_file(command.output / "trends.html", print_trends_report(trends, "repose trends"));

@@ -9,6 +9,7 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
+#include "server/cli/output.hpp"
 #include "server/cli/text_table.hpp"
 #include "server/jobs/clock.hpp"
 #include "server/json/diagnosis_json.hpp"
@@ -82,6 +83,7 @@ engine::Result<Generation, std::string> read_generation(const Service& service,
 int write_lineage_report(const Service& service,
                          const LineageCommand& command,
                          const std::vector<LineageItem>& items) {
+  if (const auto why = objection_to_file(command.report)) return report_error(*why, false);
   Lineage lineage;
   for (const LineageItem& item : path_through(items, command.id)) {
     auto generation = read_generation(service, item);

@@ -12,6 +12,7 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
+#include "server/cli/output.hpp"
 #include "server/cli/study_summary.hpp"
 #include "server/json/place.hpp"
 #include "server/json/published_study_json.hpp"
@@ -93,7 +94,8 @@ int study_command(const StudyCommand& command) {
                          {}},
                         json);
   }
-  if (!command.output.empty()) std::filesystem::create_directories(command.output);
+  const auto folder = command.output.empty() ? std::filesystem::path(".") : command.output;
+  if (const auto why = make_folder(folder)) return report_error(*why, json);
   const Interrupt interrupt;
   db::Store store = open_store(command.database);
   Workers workers(

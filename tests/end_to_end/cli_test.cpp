@@ -220,6 +220,44 @@ TEST_CASE("a tolerance of what is not measured is refused, never left out", "[en
              Contains("the study measures drop.restitution"));
 }
 
+TEST_CASE("where output cannot be written is told before the work, not after", "[end_to_end]") {
+  const TemporaryFolder folder;
+  const std::string study = (folder.path / "study.json").string();
+  std::ofstream(study) << small_study;
+  const std::string database = (folder.path / "a.db").string();
+  const std::string nowhere = (folder.path / "nowhere" / "r.html").string();
+  const auto refused = [](const std::string& words) {
+    const Ran ran = run(words, "&1");
+    CHECK(ran.exit_code == 2);
+    return ran.output;
+  };
+  CHECK_THAT(refused("calibrate " + study + " --db " + database + " --report " + nowhere),
+             Contains(nowhere + " cannot be written: there is no folder"));
+  CHECK_FALSE(fs::exists(database));
+  REQUIRE(run("calibrate --no-pictures " + study + " --db " + database).exit_code == 0);
+  CHECK_THAT(refused("report 1 --db " + database + " --output " + folder.path.string()),
+             Contains("is a folder"));
+  CHECK_THAT(refused("lineage 1 --db " + database + " --report " + nowhere), Contains(nowhere));
+  const std::string in_file = study + "/frames";
+  for (const char* words : {"evaluate drop --frames ", "trends --output ", "schema --write "}) {
+    INFO(words);
+    CHECK_THAT(refused(words + in_file + (words[0] == 't' ? " --db " + database : "")),
+               Contains("cannot make the folder " + study));
+  }
+}
+
+TEST_CASE("reports of two databases in one folder leave each other alone", "[end_to_end]") {
+  const TemporaryFolder folder;
+  const std::string study = (folder.path / "study.json").string();
+  std::ofstream(study) << small_study;
+  for (const char* name : {"r.db", "s.db"}) {
+    const std::string database = (folder.path / name).string();
+    REQUIRE(run("calibrate --no-pictures " + study + " --db " + database).exit_code == 0);
+  }
+  CHECK(fs::exists(folder.path / "r-report-1.html"));
+  CHECK(fs::exists(folder.path / "s-report-1.html"));
+}
+
 TEST_CASE("frames are written with an index", "[end_to_end][slow]") {
   const TemporaryFolder folder;
   const Ran ran = run("evaluate drop --fidelity draft --json --frames " + folder.path.string());
