@@ -69,7 +69,7 @@ void copy_checked(const fs::path& from, const fs::path& to) {
   fs::remove(to);  // left by a copy that was cut off
   try {
     Connection source(from, Connection::Mode::read);
-    check_schema(source);
+    check_made(source);
     Connection target(to, Connection::Mode::write);
     source.copy_to(target);
     target.run("PRAGMA journal_mode = DELETE");

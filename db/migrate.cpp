@@ -46,6 +46,13 @@ void check_schema(Connection& connection) {
   }
 }
 
+void check_made(Connection& connection) {
+  check_schema(connection);
+  if (empty(connection)) {
+    throw Error(0, connection.file().string() + " is empty: it holds no database of this program");
+  }
+}
+
 void check_current(Connection& connection) {
   check_schema(connection);
   const std::int64_t version = pragma(connection, "user_version");

@@ -14,6 +14,9 @@ std::int64_t newest_schema();
 /// Refuses a file that is not ours or that a newer program has made.
 void check_schema(Connection& connection);
 
+/// Refuses also one that holds nothing.
+void check_made(Connection& connection);
+
 /// Refuses also one that this program would have to migrate first.
 void check_current(Connection& connection);
 

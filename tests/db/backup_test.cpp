@@ -163,6 +163,8 @@ TEST_CASE("a backup does not replace a file, and a database in use is not replac
   CHECK_THROWS_WITH(restore(folder / "none", folder / "b.db"), Catch::Contains("no backup"));
   std::ofstream(folder / "strange") << "this is no database, but a text that is long enough";
   CHECK_THROWS_AS(restore(folder / "strange", folder / "b.db"), Error);
+  std::ofstream(folder / "empty");
+  CHECK_THROWS_WITH(restore(folder / "empty", folder / "b.db"), Catch::Contains("is empty"));
   CHECK_FALSE(std::filesystem::exists(folder / "b.db"));
 }
 

@@ -143,4 +143,8 @@ TEST_CASE("a fit is exported, and the database backed up, examined and restored"
   CHECK_THAT(run("restore " + copy + db), Contains(".replaced-1"));
   CHECK_THAT(run("show 1" + db), Contains("restitution"));
   CHECK_THAT(run("backup " + copy + db, 2), Contains("there already"));
+  const std::string empty = (folder / "empty.db").string();
+  std::ofstream{empty};
+  CHECK_THAT(run("restore " + empty + db, 2), Contains("holds no database of this program"));
+  CHECK_THAT(run("show 1" + db), Contains("restitution"));
 }
