@@ -68,6 +68,11 @@ void set_up(Connection& connection, Access access) {
 
 }  // namespace
 
+void check_file(const std::filesystem::path& database) {
+  Connection connection(database, Connection::Mode::read);
+  check_schema(connection);
+}
+
 Store::State::State(const std::filesystem::path& file, Access access)
     : lock(access == Access::write ? std::make_unique<FileLock>(file) : nullptr),
       connection(file, access == Access::write ? Connection::Mode::write : Connection::Mode::read) {

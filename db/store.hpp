@@ -33,6 +33,10 @@ enum class Access {
   read,   ///< looks only; the file must be there
 };
 
+/// Throws db::Error where the file is of another program, or of a newer one of this. What is older,
+/// or empty, becomes a database when it is opened to be written.
+void check_file(const std::filesystem::path& database);
+
 class Store {
  public:
   Store(const std::filesystem::path& file, Access access);

@@ -258,6 +258,31 @@ TEST_CASE("reports of two databases in one folder leave each other alone", "[end
   CHECK(fs::exists(folder.path / "s-report-1.html"));
 }
 
+TEST_CASE("tokens are made for a database of ours, or for one that is to come", "[end_to_end]") {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path / "a.db").string();
+  const std::string database = " --db " + file;
+  for (const char* words : {"token list", "token revoke abc"}) {
+    const Ran ran = run(words + database, "&1");
+    CHECK(ran.exit_code == 2);
+    CHECK_THAT(ran.output, Contains("there is no database " + file));
+  }
+  CHECK(fs::is_empty(folder.path));
+  for (const char* name : {"''", "'  '", "\"$(printf 'a\\nb')\""}) {
+    INFO(name);
+    const Ran ran = run("token create " + std::string(name) + database, "&1");
+    CHECK(ran.exit_code == 2);
+    CHECK_THAT(ran.output, Contains("a token's name is one line"));
+  }
+  CHECK(fs::is_empty(folder.path));
+  const Ran first = run("token create ada" + database, "&1");
+  CHECK(first.exit_code == 0);
+  CHECK_THAT(first.output, Contains("no database " + file + " yet") && Contains("rps_"));
+  CHECK_THAT(run("token list" + database).output, Contains("ada"));
+  std::ofstream(file) << "no database, but a text that is long enough to be looked into, and more";
+  CHECK(run("token create bob" + database).exit_code == 2);
+}
+
 TEST_CASE("frames are written with an index", "[end_to_end][slow]") {
   const TemporaryFolder folder;
   const Ran ran = run("evaluate drop --fidelity draft --json --frames " + folder.path.string());
