@@ -131,6 +131,7 @@ struct Commands {
   ReportCommand report;
   ListCommand list;
   ShowCommand show;
+  CancelCommand cancel;
   ServeCommand serve;
   TokenCommand token;
   BenchCommand bench;
@@ -184,6 +185,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_token(app, commands.token, work);
   add_list(app, commands.list, work);
   add_show(app, commands.show, work);
+  add_cancel(app, commands.cancel, work);
   add_bench(app,
             commands.bench,
             commands.bench_effects,

@@ -40,6 +40,7 @@ void add_lineage(CLI::App& app, LineageCommand& options, Work& work);
 void add_report(CLI::App& app, ReportCommand& options, Work& work);
 void add_list(CLI::App& app, ListCommand& options, Work& work);
 void add_show(CLI::App& app, ShowCommand& options, Work& work);
+void add_cancel(CLI::App& app, CancelCommand& options, Work& work);
 
 void add_serve(CLI::App& app, ServeCommand& options, Work& work);
 void add_token(CLI::App& app, TokenCommand& options, Work& work);

@@ -8,6 +8,7 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
+#include "server/cli/interrupted_text.hpp"
 #include "server/cli/output.hpp"
 #include "server/cli/progress.hpp"
 #include "server/cli/summary.hpp"
@@ -55,10 +56,11 @@ std::optional<InputError> objection_to_report(const CalibrateCommand& command) {
   return objection_to_file(command.report);
 }
 
-int stopped(const CalibrateCommand& command) {
+int stopped(const CalibrateCommand& command, std::int64_t id) {
   std::cerr << "repose: stopped. Every finished evaluation is kept in " << command.database.string()
-            << "; the same command takes the calibration up where it was:\n  repose calibrate "
-            << command.study.string() << " --db " << command.database.string() << "\n";
+            << "; the same command takes the calibration up where it was:\n  "
+            << resume_words(command) << "\n"
+            << queued_text(id, Cancelled::calibration, command.database);
   return exit_code::interrupted;
 }
 
@@ -70,17 +72,16 @@ int calibrate_text(const CalibrateCommand& command, const std::string& study) {
   const Interrupt interrupt;
   const auto answer = run(command, study, interrupt);
   if (!answer) {
-    if (interrupt.happened()) return stopped(command);
     return report_error(
         {command.study.string() + ": " + answer.error().message, answer.error().problems}, json);
   }
   const auto document = parse_document(*answer);
   if (json) std::cout << *answer << "\n";
-  if (interrupt.happened()) return stopped(command);
   if (!document) {
     std::cerr << "repose: " << document.error() << "\n";
     return exit_code::failed;
   }
+  if (document->state == "queued") return stopped(command, document->id);
   if (!json) std::cout << print_summary(*document);
   if (!document->fit) {
     std::cerr << "repose: calibration " << document->id << " has no fit"

@@ -109,4 +109,18 @@ void add_show(CLI::App& app, ShowCommand& options, Work& work) {
   does(command, options, show_command, work);
 }
 
+void add_cancel(CLI::App& app, CancelCommand& options, Work& work) {
+  CLI::App& command = *app.add_subcommand(
+      "cancel", "End a calibration that is queued, so that nobody goes on with it");
+  command.add_option("id", options.id, "Calibration")->required();
+  command.add_flag_callback(
+      "--diagnosis",
+      [&options] { options.what = Cancelled::diagnosis; },
+      "The number is that of a diagnosis");
+  add_database(command, options.database);
+  add_json(command, options.form, "Its document on standard output");
+  command.footer("What a running service works on is cancelled over HTTP, with DELETE.");
+  does(command, options, cancel_command, work);
+}
+
 }  // namespace repose::server

@@ -33,10 +33,11 @@ int evaluate_command(const EvaluateCommand& command);
 int answer_command();
 
 struct CalibrateCommand {
-  std::filesystem::path study;
+  std::filesystem::path study = {};
+  std::vector<std::string> asked_as = {};  ///< words of the command line; empty: calibrate STUDY
   std::filesystem::path database;
   unsigned workers = 0;
-  std::filesystem::path report;  ///< file; empty: its usual name beside the database
+  std::filesystem::path report = {};  ///< file; empty: its usual name beside the database
   bool pictures = true;
   Form form = Form::text;
 };
@@ -129,6 +130,17 @@ struct ShowCommand {
   Form form = Form::text;
 };
 int show_command(const ShowCommand& command);
+
+/// What is ended before its end.
+enum class Cancelled { calibration, diagnosis };
+
+struct CancelCommand {
+  std::int64_t id = 0;
+  Cancelled what = Cancelled::calibration;
+  std::filesystem::path database;
+  Form form = Form::text;
+};
+int cancel_command(const CancelCommand& command);
 
 struct ServeCommand {
   std::string host = "127.0.0.1";

@@ -7,6 +7,7 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
+#include "server/cli/interrupted_text.hpp"
 #include "server/cli/output.hpp"
 #include "server/cli/summary.hpp"
 #include "server/cli/text_table.hpp"
@@ -104,6 +105,28 @@ int show_command(const ShowCommand& command) {
   const auto document = read(*text);
   if (!document) return exit_code::failed;
   std::cout << print_summary(*document);
+  if (document->state == "queued") {
+    std::cout << queued_text(command.id, Cancelled::calibration, command.database);
+  }
+  return exit_code::done;
+}
+
+int cancel_command(const CancelCommand& command) {
+  if (!database_is_there(command.database)) return exit_code::misused;
+  ServiceOptions options;
+  options.database = command.database;
+  Service service(options);
+  const bool calibration = command.what == Cancelled::calibration;
+  const auto answer =
+      calibration ? service.cancel(command.id) : service.cancel_diagnosis(command.id);
+  const bool json = command.form == Form::json;
+  if (!answer) return report_error({answer.error().message, answer.error().problems}, json);
+  if (json) {
+    std::cout << *answer << "\n";
+  } else {
+    std::cout << (calibration ? "Calibration " : "Diagnosis ") << command.id
+              << " is cancelled; every finished evaluation is kept\n";
+  }
   return exit_code::done;
 }
 

@@ -10,6 +10,8 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
+#include "server/cli/interrupted_text.hpp"
+#include "server/json/missing_effect_json.hpp"
 #include "server/json/missing_effect_request.hpp"
 #include "server/json/place.hpp"
 #include "server/json/report_json.hpp"
@@ -111,6 +113,8 @@ int diagnose_command(const MissingEffectCommand& command) {
   if (!answer) return refuse(answer.error(), json);
   if (interrupt.happened()) {
     std::cerr << "repose: stopped. Every finished run is kept; the same command takes it up.\n";
+    const auto stopped = parse_diagnosis_record(*answer);
+    if (stopped) std::cerr << queued_text(stopped->id, Cancelled::diagnosis, command.database);
     return exit_code::interrupted;
   }
   if (json) {
@@ -133,13 +137,15 @@ int extend_command(const MissingEffectCommand& command) {
     if (!answer) return refuse(answer.error(), json);
     study = *std::move(answer);
   }
-  return calibrate_text({.study = "the extended study",
-                         .database = command.database,
-                         .workers = command.workers,
-                         .report = command.report,
-                         .pictures = command.pictures,
-                         .form = command.form},
-                        study);
+  return calibrate_text(
+      {.study = "the extended study",
+       .asked_as = {"extend", std::to_string(command.id), "--effect", command.effect},
+       .database = command.database,
+       .workers = command.workers,
+       .report = command.report,
+       .pictures = command.pictures,
+       .form = command.form},
+      study);
 }
 
 }  // namespace repose::server

@@ -129,6 +129,19 @@ TEST_CASE("a study that names a material and a set is taken as it is sent to the
   }
 }
 
+TEST_CASE("a calibration that waits is told, and ended, from the command line", "[end_to_end]") {
+  const TemporaryFolder folder;
+  const std::string db = " --db " + (folder / "a.db").string();
+  REQUIRE(Service(options(folder)).submit(example("valid/drop-minimal.json")).has_value());
+  CHECK_THAT(run("show 1" + db), Contains("repose cancel 1" + db));
+  CHECK_THAT(run("cancel 1" + db), Contains("Calibration 1 is cancelled"));
+  CHECK_THAT(run("show 1" + db), Contains("(cancelled)") && !Contains("repose cancel"));
+  CHECK_THAT(run("cancel 1" + db, 2), Contains("has ended: it is cancelled"));
+  CHECK_THAT(run("cancel 9" + db, 2), Contains("no calibration 9"));
+  CHECK_THAT(run("cancel 9 --diagnosis" + db, 2), Contains("no diagnosis 9"));
+  CHECK_THAT(run("cancel 1 --db " + (folder / "none.db").string(), 2), Contains("no database"));
+}
+
 TEST_CASE("a fit is exported, and the database backed up, examined and restored", "[end_to_end]") {
   const TemporaryFolder folder;
   const std::string db = " --db " + (folder / "a.db").string();

@@ -7,6 +7,8 @@
 
 #include "engine/catalogue.hpp"
 #include "server/cli/assignment.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/interrupted_text.hpp"
 #include "server/cli/progress.hpp"
 #include "server/cli/reference_grain.hpp"
 #include "server/cli/text_table.hpp"
@@ -113,6 +115,23 @@ TEST_CASE("the reference grain names parameters of the catalogue within their bo
     CHECK(value >= info->field->lower);
     CHECK(value <= info->field->upper);
   }
+}
+
+TEST_CASE("what takes a calibration up says all that it was given, as a shell reads it",
+          "[server]") {
+  CHECK(server::shell_word("r.db") == "r.db");
+  CHECK(server::shell_word("") == "''");
+  CHECK(server::shell_word("it's here") == R"('it'\''s here')");
+  CHECK(server::resume_words({.study = "my study.json", .database = "r.db"}) ==
+        "repose calibrate 'my study.json' --db r.db");
+  CHECK(server::resume_words({.asked_as = {"extend", "3", "--effect", "air_drag"},
+                              .database = "$r.db",
+                              .workers = 2,
+                              .report = "a b.html",
+                              .pictures = false,
+                              .form = server::Form::json}) ==
+        "repose extend 3 --effect air_drag --db '$r.db' --workers 2 --report 'a b.html' "
+        "--no-pictures --json");
 }
 
 TEST_CASE("columns line up by letters, not by bytes", "[server]") {
