@@ -65,11 +65,12 @@ struct ScheduleCommand {
   std::int64_t id = 0;           ///< of the schedule; to add: one to replace, 0 for a new one
   std::int64_t calibration = 0;  ///< to start from, or to put in force
   std::filesystem::path study;
-  std::string name;  ///< empty: the study's
-  std::string cron = "30 2 * * *";
-  std::string time_zone = "UTC";
-  int jitter_minutes = 0;
-  int catch_up_hours = 12;
+  // To add; what is not given is that of the schedule replaced, or the usual.
+  std::optional<std::string> name;  ///< the usual: the study's
+  std::optional<std::string> cron;
+  std::optional<std::string> time_zone;
+  std::optional<int> jitter_minutes;
+  std::optional<int> catch_up_hours;
   std::filesystem::path database;
   unsigned workers = 0;
   int limit = 50;

@@ -16,18 +16,21 @@ void add_schedule(CLI::App& app, ScheduleCommand& options, Work& work) {
   CLI::App& make = add("add", "Add a schedule, or replace one", schedule_add_command);
   make.add_option("study", options.study, "Study document")->required()->type_name("STUDY.json");
   make.add_option("--cron", options.cron, "Minute, hour, day, month, weekday; as crontab(5)")
-      ->capture_default_str();
+      ->default_str("30 2 * * *");
   make.add_option("--time-zone", options.time_zone, "IANA name, such as Europe/Berlin")
-      ->capture_default_str();
+      ->default_str("UTC");
   make.add_option("--name", options.name, "Name (default: the study's)");
   make.add_option("--jitter-minutes", options.jitter_minutes, "Begin up to that much later")
-      ->capture_default_str();
+      ->default_str("0");
   make.add_option(
           "--catch-up-hours", options.catch_up_hours, "How late a missed night is still run")
-      ->capture_default_str();
+      ->default_str("12");
   make.add_option(
       "--start-from", options.calibration, "Calibration whose fit is in force at first");
-  make.add_option("--replace", options.id, "Schedule to put this one in the place of");
+  make.add_option("--replace",
+                  options.id,
+                  "Schedule to put this one in the place of; what is not given stays as it has it")
+      ->check(CLI::PositiveNumber);
   add("list", "List the schedules", schedule_list_command);
   const auto add_with_id =
       [&](const char* name, const char* what, int (*run)(const ScheduleCommand&)) -> CLI::App& {

@@ -1,3 +1,4 @@
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -41,6 +42,29 @@ int print(const ScheduleCommand& command,
   return exit_code::done;
 }
 
+constexpr std::array<const char*, 6> replaceable{
+    "name", "cron", "time_zone", "jitter_minutes", "catch_up_hours", "start_from"};
+
+/// What the schedule that is replaced has.
+void keep_unsaid(const Json& before, Json& document) {
+  for (const char* member : replaceable) {
+    if (before.contains(member)) document[member] = before[member];
+  }
+}
+
+/// What the command line says.
+void take_said(const ScheduleCommand& command, Json& document) {
+  const auto take = [&](const char* member, const auto& said) {
+    if (said) document[member] = *said;
+  };
+  take("name", command.name);
+  take("cron", command.cron);
+  take("time_zone", command.time_zone);
+  take("jitter_minutes", command.jitter_minutes);
+  take("catch_up_hours", command.catch_up_hours);
+  if (command.calibration > 0) document["start_from"] = command.calibration;
+}
+
 }  // namespace
 
 int schedule_add_command(const ScheduleCommand& command) {
@@ -53,14 +77,16 @@ int schedule_add_command(const ScheduleCommand& command) {
     return report_error(
         {command.study.string() + ": " + study.error().message, study.error().problems}, json);
   }
+  Json document{
+      {"name", parse_calibration(*study)->name}, {"cron", "30 2 * * *"}, {"time_zone", "UTC"}};
+  if (command.id != 0) {
+    const auto before = service.schedule(command.id);
+    if (!before) return report_error({before.error().message, before.error().problems}, json);
+    keep_unsaid(Json::parse(*before), document);
+  }
+  take_said(command, document);
   // As it was written: each night takes the measurements that are kept then.
-  Json document{{"name", command.name.empty() ? parse_calibration(*study)->name : command.name},
-                {"cron", command.cron},
-                {"time_zone", command.time_zone},
-                {"jitter_minutes", command.jitter_minutes},
-                {"catch_up_hours", command.catch_up_hours},
-                {"study", Json::parse(*text)}};
-  if (command.calibration > 0) document["start_from"] = command.calibration;
+  document["study"] = Json::parse(*text);
   return print(command,
                command.id == 0 ? service.add_schedule(to_text(document))
                                : service.replace_schedule(command.id, to_text(document)),

@@ -72,7 +72,15 @@ TEST_CASE("nights are scheduled, run, looked up and undone from the command line
              Contains("in force    calibration 1") &&
                  Contains("restitution.coefficient:grain-wall") && !Contains("- to -"));
 
-  run("schedule add --replace 1 " + study(folder, 0.7) + " --time-zone Europe/Berlin" + db);
+  CHECK_THAT(run("schedule add --replace 1 --jitter-minutes 5 " + study(folder, 0.7) + db),
+             Contains("30 2 * * * in Europe/Berlin"));
+  CHECK_THAT(run("schedule add --replace 1 --cron '0 3 * * *' " + study(folder, 0.7) + db),
+             Contains("0 3 * * * in Europe/Berlin"));
+  const Json replaced = Json::parse(run("schedule show 1 --json" + db));
+  CHECK(replaced["jitter_minutes"] == 5);
+  CHECK(replaced["name"] == "one grain dropped");
+  run("schedule add --replace 9 " + study(folder, 0.7) + db, 2);
+  run("schedule add --replace 0 " + study(folder, 0.7) + db, 2);
   CHECK_THAT(run(night), Contains("moved"));
   const Json history = Json::parse(run("schedule history 1 --json" + db));
   REQUIRE(history["items"].size() == 2);
