@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "server/cli/arguments.hpp"
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
+#include "server/json/place.hpp"
 
 namespace repose::server {
 
@@ -144,12 +146,51 @@ struct Commands {
   SchemaCommand schema;
 };
 
+/// What is wrong where a command should stand; nothing where one does.
+std::string objection_to_command(const CLI::App& group) {
+  if (group.get_require_subcommand_min() == 0 || !group.get_subcommands().empty()) return "";
+  std::vector<std::string> names;
+  for (const CLI::App* command : group.get_subcommands([](const CLI::App*) { return true; })) {
+    if (!command->get_group().empty())
+      names.push_back(command->get_name());  // a hidden one has none
+  }
+  const std::vector<std::string> words = group.remaining();
+  if (words.empty()) return "which command? There are " + listed(names);
+  const std::string& word = words.front();
+  if (!word.starts_with("-")) {
+    return "there is no command '" + word + "'" + did_you_mean(word, names) + "; there are " +
+           listed(names);
+  }
+  std::vector<std::string> options;
+  for (const CLI::Option* option : group.get_options()) {
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  }
+  return "there is no option " + word + did_you_mean(word, options) + " before a command";
+}
+
 int usage_error(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() == 0) return app.exit(error);  // help and version
   std::string command = "repose";
-  for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
-  std::cerr << "repose: " << error.what() << "\nTry `" << command << " --help`.\n";
+  const CLI::App* group = &app;
+  while (!group->get_subcommands().empty()) {
+    group = group->get_subcommands().front();
+    command += " " + group->get_name();
+  }
+  const std::string objection = objection_to_command(*group);
+  const bool asked_for = error.get_exit_code() == 0;  // help and version
+  if (asked_for && (objection.empty() || group->remaining().empty())) return app.exit(error);
+  std::cerr << "repose: " << (objection.empty() ? error.what() : objection) << "\nTry `" << command
+            << " --help`.\n";
   return exit_code::misused;
+}
+
+/// The words of the command line; "help COMMAND" is another way to say "COMMAND --help".
+std::vector<const char*> words_of(int argc, const char* const* argv) {
+  std::vector<const char*> words(argv, argv + argc);
+  if (words.size() > 1 && std::string_view(words[1]) == "help") {
+    words.erase(words.begin() + 1);
+    words.push_back("--help");
+  }
+  return words;
 }
 
 }  // namespace
@@ -199,7 +240,8 @@ int run_command_line(int argc, const char* const* argv) {
   answer.group("");  // hidden: for the worker pool
   answer.callback([&] { work = answer_command; });
   try {
-    app.parse(argc, argv);
+    const std::vector<const char*> words = words_of(argc, argv);
+    app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& error) {
     return usage_error(app, error);
   }

@@ -283,6 +283,24 @@ TEST_CASE("tokens are made for a database of ours, or for one that is to come", 
   CHECK(run("token create bob" + database).exit_code == 2);
 }
 
+TEST_CASE("a command that there is not is named, with the nearest", "[end_to_end]") {
+  const auto refused = [](const std::string& words) {
+    const Ran ran = run(words, "&1");
+    CHECK(ran.exit_code == 2);
+    return ran.output;
+  };
+  for (const char* words : {"calibrat study.json", "calibrat --help", "help calibrat"}) {
+    CHECK_THAT(refused(words), Contains("'calibrat' (did you mean \"calibrate\"?)"));
+  }
+  CHECK_THAT(refused("schedule ad"),
+             Contains("'ad' (did you mean \"add\"?)") && Contains("`repose schedule --help`"));
+  CHECK_THAT(refused("--verson"), Contains("--verson (did you mean \"--version\"?)"));
+  CHECK_THAT(refused(""), Contains("which command?") && !Contains("answer"));
+  CHECK(run("help").output == run("--help").output);
+  CHECK(run("help schedule add").output == run("schedule add --help").output);
+  CHECK(run("help schedule add").exit_code == 0);
+}
+
 TEST_CASE("frames are written with an index", "[end_to_end][slow]") {
   const TemporaryFolder folder;
   const Ran ran = run("evaluate drop --fidelity draft --json --frames " + folder.path.string());
