@@ -63,21 +63,28 @@ Result<double, std::string> parse_value(const FieldInfo& field, std::string_view
     }
     value *= unit->factor;
   }
-  if (value < field.lower || value > field.upper) {
+  const auto within = [&](double si) { return si >= field.lower && si <= field.upper; };
+  if (!within(value) && symbol.empty() && within(value * field.unit.factor)) {
+    return Unexpected{quoted(text) + " lacks its unit; write " + std::string(text) +
+                      std::string(field.unit.symbol) + ", for as a plain number it is " +
+                      number_text(value / field.unit.factor) + unit_suffix(field.unit)};
+  }
+  if (!within(value)) {
     return Unexpected{quoted(text) + " is out of range; " + std::string(field.name) +
                       " must lie in " + range_text(field)};
   }
   return value;
 }
 
-/// "grain-wall" -> materials; nothing where a name is none.
-std::optional<std::vector<MaterialId>> parse_between(std::string_view text) {
+/// "grain-wall" -> materials; the error is a name that is none.
+Result<std::vector<MaterialId>, std::string_view> parse_between(std::string_view text) {
   std::vector<MaterialId> between;
   while (!text.empty()) {
     const std::size_t dash = text.find('-');
     const auto& names = engine::material_names;
-    const auto found = std::ranges::find(names, text.substr(0, dash));
-    if (found == names.end()) return std::nullopt;
+    const std::string_view name = text.substr(0, dash);
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end()) return Unexpected{name};
     between.push_back(static_cast<MaterialId>(found - names.begin()));
     text = dash == text.npos ? std::string_view{} : text.substr(dash + 1);
   }
@@ -116,9 +123,18 @@ Result<ParameterAssignment, std::string> parse_parameter(std::string_view text) 
                       "; `repose catalogue` lists them all"};
   }
   const auto between = parse_between(colon == left.npos ? "" : left.substr(colon + 1));
-  if (!between || between->size() != engine::materials_of(info->scope)) {
-    return Unexpected{quoted(left) + " does not name what it is between; write " +
-                      wanted_key(field, info->scope)};
+  const std::string instead = "; write " + wanted_key(field, info->scope);
+  if (info->scope == engine::Scope::global && colon != left.npos) {
+    return Unexpected{quoted(left) + " names a material, and " + std::string(field) +
+                      " is of none" + instead};
+  }
+  if (!between) {
+    return Unexpected{quoted(between.error()) + " is no material; there are " +
+                      listed(engine::material_names) + instead};
+  }
+  if (between->size() != engine::materials_of(info->scope)) {
+    return Unexpected{quoted(left) + " does not name what it is " +
+                      (info->scope == engine::Scope::pair ? "between" : "of") + instead};
   }
   const auto value = parse_value(*info->field, text.substr(equals + 1));
   if (!value) return Unexpected{std::string(left) + ": " + value.error()};

@@ -66,13 +66,24 @@ TEST_CASE("an unknown field is refused with the nearest one", "[server]") {
 TEST_CASE("materials that are missing, unknown or too many are refused", "[server]") {
   for (const char* text : {"sliding_friction.coefficient=0.3",
                            "sliding_friction.coefficient:grain=0.3",
-                           "sliding_friction.coefficient:grain-sand=0.3",
-                           "sliding_friction.coefficient:grain-grain-wall=0.3",
-                           "material.density:grain-wall=1228kg/m3"}) {
+                           "sliding_friction.coefficient:grain-grain-wall=0.3"}) {
     const auto set = parse_parameter(text);
     REQUIRE_FALSE(set);
     CHECK_THAT(set.error(), Contains("does not name what it is between; write "));
   }
+  const auto said = [](const char* text) {
+    const auto set = parse_parameter(text);
+    REQUIRE_FALSE(set);
+    return set.error();
+  };
+  CHECK_THAT(said("sliding_friction.coefficient:grain-sand=0.3"),
+             Contains("'sand' is no material; there are grain, wall; write "));
+  CHECK_THAT(said("material.density:wheat=800kg/m3"),
+             Contains("'wheat' is no material") && Contains("material.density:grain"));
+  CHECK_THAT(said("material.density:grain-wall=1228kg/m3"),
+             Contains("does not name what it is of; write material.density:grain"));
+  CHECK_THAT(said("air_drag.share:grain=0.5"),
+             Contains("air_drag.share is of none; write air_drag.share"));
 }
 
 TEST_CASE("a value out of range, none at all or no number is refused", "[server]") {
@@ -86,6 +97,20 @@ TEST_CASE("a value out of range, none at all or no number is refused", "[server]
              Contains("is not a number"));
   CHECK_THAT(parse_parameter("restitution.coefficient:grain-grain=nan").error(),
              Contains("is not a number"));
+}
+
+TEST_CASE("a plain number that is out of range without its unit is told what it lacks",
+          "[server]") {
+  const auto* kettle = engine::find_experiment("kettle");
+  REQUIRE(kettle != nullptr);
+  CHECK_THAT(parse_setting(*kettle, "moisture=18").error(),
+             Contains("'18' lacks its unit; write 18%") && Contains("1800 %"));
+  CHECK_THAT(parse_setting(*kettle, "moisture=180").error(), Contains("out of range"));
+  CHECK_THAT(parse_setting(*kettle, "moisture=180%").error(), Contains("out of range"));
+  CHECK_THAT(parse_parameter("moisture_softening.reference:grain=12").error(),
+             Contains("'12' lacks its unit; write 12%"));
+  CHECK_THAT(parse_parameter("restitution.coefficient:grain-grain=7").error(),
+             !Contains("lacks its unit"));
 }
 
 TEST_CASE("a setting with named values is set by name", "[server]") {
