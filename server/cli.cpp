@@ -1,6 +1,8 @@
 #include "server/cli.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -42,6 +44,14 @@ constexpr const char* evaluate_footer =
     "Without a study the grain is soybean: 6.496 mm, 1228 kg/m3, G 1.04 MPa, restitution 0.6,\n"
     "sliding friction 0.45 (grain-wall 0.30), rolling resistance 0.05.";
 
+/// A number beyond its bounds would be taken for another one.
+std::string objection_to_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error == std::errc{} && end == text.data() + text.size()) return "";
+  return "a seed is a whole number from 0 to 18446744073709551615, not " + text;
+}
+
 void add_evaluate(CLI::App& app, EvaluateCommand& options, Work& work) {
   CLI::App& command = *app.add_subcommand("evaluate", "Run one virtual experiment");
   std::string names;
@@ -62,7 +72,9 @@ void add_evaluate(CLI::App& app, EvaluateCommand& options, Work& work) {
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->take_all();
-  command.add_option("--seed", options.seed, "Seed of the first replicate")->capture_default_str();
+  command.add_option("--seed", options.seed, "Seed of the first replicate")
+      ->capture_default_str()
+      ->check(objection_to_seed);
   command.add_option("--replicates", options.replicates, "Runs that differ in seed only")
       ->capture_default_str()
       ->check(CLI::Range(1, 10000));

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <set>
 #include <stop_token>
 #include <sys/prctl.h>
 #include <thread>
@@ -86,6 +87,10 @@ void take_study_settings(const Calibration& calibration, Experiment& experiment)
   }
 }
 
+Unexpected<InputError> given_twice(const std::string& option, const std::string& name) {
+  return Unexpected{InputError{option + ": " + name + " is given twice; give it one value", {}}};
+}
+
 Result<Trial, InputError> trial_of(const EvaluateCommand& command) {
   const engine::ExperimentInfo* info = engine::find_experiment(command.experiment);
   if (info == nullptr) return Unexpected{no_experiment(command.experiment)};
@@ -96,6 +101,9 @@ Result<Trial, InputError> trial_of(const EvaluateCommand& command) {
   for (const std::string& text : command.parameters) {
     const auto assignment = parse_parameter(text);
     if (!assignment) return Unexpected{InputError{"--set: " + assignment.error(), {}}};
+    if (given.get(assignment->key)) {
+      return given_twice("--set", engine::to_string(assignment->key));
+    }
     given.set(assignment->key, assignment->value);
   }
   if (command.study.empty()) {
@@ -109,9 +117,11 @@ Result<Trial, InputError> trial_of(const EvaluateCommand& command) {
     take_study_settings(*study, trial.experiment);
   }
   trial.experiment.fidelity = command.fidelity.value_or(trial.experiment.fidelity);
+  std::set<std::string> set;
   for (const std::string& text : command.settings) {
     const auto assignment = parse_setting(*info, text);
     if (!assignment) return Unexpected{InputError{"--setting: " + assignment.error(), {}}};
+    if (!set.insert(assignment->name).second) return given_twice("--setting", assignment->name);
     trial.experiment.settings[assignment->name] = assignment->value;
   }
   return trial;

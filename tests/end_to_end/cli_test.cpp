@@ -123,6 +123,11 @@ TEST_CASE("bad usage is exit code 2 with a sentence on standard error", "[end_to
                             "explain kettl",
                             "evaluate drop --set nonsense",
                             "evaluate drop --replicates 0",
+                            "evaluate drop --seed -1",
+                            "evaluate drop --seed 99999999999999999999",
+                            "evaluate drop --setting height=1m --setting height=2m",
+                            "evaluate drop --set restitution.coefficient:grain-wall=0.3 "
+                            "--set restitution.coefficient:wall-grain=0.4",
                             "calibrate /nowhere/study.json",
                             "fly"}) {
     INFO(words);
