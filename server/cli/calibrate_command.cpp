@@ -8,7 +8,7 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
-#include "server/cli/interrupted_text.hpp"
+#include "server/cli/next_command.hpp"
 #include "server/cli/output.hpp"
 #include "server/cli/progress.hpp"
 #include "server/cli/summary.hpp"
@@ -92,6 +92,7 @@ int calibrate_text(const CalibrateCommand& command, const std::string& study) {
   write_report(*document, {path, command.database, command.pictures}, interrupt.token());
   (json ? std::cerr : std::cout) << "\nReport: " << path.string() << "\nCalibration "
                                  << document->id << " in " << command.database.string() << "\n";
+  if (!json) std::cout << after_fit(*document, command.database);
   return document->fit->stop == calibrator::StopReason::failed ? exit_code::failed
                                                                : exit_code::done;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/catalogue.hpp"
+#include "server/cli/next_command.hpp"
 #include "server/cli/text_table.hpp"
 #include "server/json/diagnosis_json.hpp"
 #include "server/json/missing_effect_json.hpp"
@@ -165,7 +166,9 @@ std::string prediction_table(const Calibration& calibration, const Diagnosis& di
 
 }  // namespace
 
-std::string print_diagnosis_text(std::string_view calibration, std::string_view diagnosis) {
+std::string print_diagnosis_text(std::string_view calibration,
+                                 std::string_view diagnosis,
+                                 const std::filesystem::path& database) {
   const auto own = parse_document(calibration);
   if (!own) return own.error() + "\n";
   const auto record = parse_diagnosis_record(diagnosis);
@@ -194,7 +197,7 @@ std::string print_diagnosis_text(std::string_view calibration, std::string_view 
   if (!result->next.empty()) text += "\n" + next_table(*result);
   for (const std::string& remark : result->remarks) text += "- " + remark + "\n";
   return text + "\n" + std::to_string(result->evaluations) +
-         " evaluations beyond the calibration\n";
+         " evaluations beyond the calibration\n" + after_diagnosis(own->id, *result, database);
 }
 
 std::string print_comparison_text(std::string_view calibration, std::string_view comparison) {

@@ -1,6 +1,7 @@
 /// Comparisons and diagnoses as text for a terminal.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -8,6 +9,9 @@ namespace repose::server {
 
 /// `calibration` and `comparison`: the service's documents.
 std::string print_comparison_text(std::string_view calibration, std::string_view comparison);
-std::string print_diagnosis_text(std::string_view calibration, std::string_view diagnosis);
+/// `database`: for the command that comes next.
+std::string print_diagnosis_text(std::string_view calibration,
+                                 std::string_view diagnosis,
+                                 const std::filesystem::path& database);
 
 }  // namespace repose::server

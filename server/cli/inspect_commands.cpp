@@ -7,7 +7,7 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
-#include "server/cli/interrupted_text.hpp"
+#include "server/cli/next_command.hpp"
 #include "server/cli/output.hpp"
 #include "server/cli/summary.hpp"
 #include "server/cli/text_table.hpp"
@@ -104,7 +104,7 @@ int show_command(const ShowCommand& command) {
   }
   const auto document = read(*text);
   if (!document) return exit_code::failed;
-  std::cout << print_summary(*document);
+  std::cout << print_summary(*document) << after_fit(*document, command.database);
   if (document->state == "queued") {
     std::cout << queued_text(command.id, Cancelled::calibration, command.database);
   }

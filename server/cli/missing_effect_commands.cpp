@@ -10,7 +10,7 @@
 #include "server/cli/exit_code.hpp"
 #include "server/cli/input.hpp"
 #include "server/cli/interrupt.hpp"
-#include "server/cli/interrupted_text.hpp"
+#include "server/cli/next_command.hpp"
 #include "server/json/missing_effect_json.hpp"
 #include "server/json/missing_effect_request.hpp"
 #include "server/json/place.hpp"
@@ -122,7 +122,7 @@ int diagnose_command(const MissingEffectCommand& command) {
   } else {
     const auto document = service.calibration(command.id);
     if (!document) return refuse(document.error(), json);
-    std::cout << print_diagnosis_text(*document, *answer);
+    std::cout << print_diagnosis_text(*document, *answer, command.database);
   }
   return exit_code::done;
 }

@@ -8,7 +8,7 @@
 #include "engine/catalogue.hpp"
 #include "server/cli/assignment.hpp"
 #include "server/cli/commands.hpp"
-#include "server/cli/interrupted_text.hpp"
+#include "server/cli/next_command.hpp"
 #include "server/cli/progress.hpp"
 #include "server/cli/reference_grain.hpp"
 #include "server/cli/text_table.hpp"

@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "server/cli/next_command.hpp"
 #include "server/cli/summary.hpp"
 #include "server/report/chart.hpp"
 #include "server/report/number_text.hpp"
@@ -155,6 +156,38 @@ TEST_CASE("a held-out measurement counts neither as hit nor as missed", "[server
         "The measurement is met within one standard error.");
   CHECK_THAT(report(document),
              Contains("Set aside and predicted within two standard errors: 0 of 1"));
+}
+
+TEST_CASE("a fit that misses names the commands that tell more, one that does not none",
+          "[server]") {
+  auto document = sample();
+  CHECK(server::after_fit(document, "r.db").empty());
+  document.id = 6;
+  document.fit->predictions[0].z = 9.0;
+  CHECK(server::after_fit(document, "my r.db") ==
+        "Next: `repose compare 6 --db 'my r.db'` shows where the model misses, "
+        "`repose diagnose 6 --db 'my r.db'` which effect it lacks.\n");
+  document.fit.reset();
+  CHECK(server::after_fit(document, "r.db").empty());
+}
+
+TEST_CASE("a diagnosis that names an effect names the command that adds it", "[server]") {
+  calibrator::Diagnosis diagnosis;
+  diagnosis.effects.resize(2);
+  diagnosis.effects[1].suspect.name = "air_drag";
+  diagnosis.refits.resize(1);
+  diagnosis.refits[0].effects = {1};
+  const auto next = [&](calibrator::DiagnosisVerdict verdict) {
+    diagnosis.verdict = verdict;
+    return server::after_diagnosis(6, diagnosis, "r.db");
+  };
+  using enum calibrator::DiagnosisVerdict;
+  CHECK(next(named) ==
+        "Next: `repose extend 6 --effect air_drag --db r.db` adds it and calibrates again.\n");
+  CHECK(next(adequate).empty());
+  CHECK(next(unexplained).empty());
+  diagnosis.refits[0].effects = {1, 0};
+  CHECK_THAT(next(pair), Contains("--effect air_drag") && Contains("the first of them"));
 }
 
 TEST_CASE("what was not learnt is said in words", "[server]") {
