@@ -1,6 +1,7 @@
 #include "calibrator/plan.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace repose::calibrator {
 
@@ -19,6 +20,12 @@ Plan make_plan(const Calibration& calibration) {
   }
   plan.affordable = plan.total() <= budget.evaluations;
   return plan;
+}
+
+int searching_budget(const Calibration& calibration) {
+  Calibration ample = calibration;
+  ample.budget.evaluations = std::numeric_limits<int>::max();
+  return make_plan(ample).total() + std::max(calibration.budget.batch, 1);
 }
 
 }  // namespace repose::calibrator

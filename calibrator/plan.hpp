@@ -18,4 +18,7 @@ struct Plan {
 
 Plan make_plan(const Calibration& calibration);
 
+/// Evaluations that pay for a plan in which nothing is given up, and for a first batch of search.
+int searching_budget(const Calibration& calibration);
+
 }  // namespace repose::calibrator

@@ -7,6 +7,7 @@
 
 #include "calibrator/draft_help.hpp"
 #include "calibrator/phrase.hpp"
+#include "calibrator/plan.hpp"
 
 namespace repose::calibrator {
 namespace {
@@ -135,6 +136,22 @@ void on_time(const Calibration& calibration, const Fit& fit, Sentences& out) {
       "machine, it may end elsewhere; a replay from the store ends here.");
 }
 
+/// A best set that nobody looked for is the best of the start.
+void on_search(const Calibration& calibration, const Fit& fit, Sentences& out) {
+  if (calibration.free.empty() || calibration.budget.method != Method::repose ||
+      fit.stop != StopReason::budget ||
+      std::ranges::count(fit.history, "search", &HistoryPoint::stage) > 0) {
+    return;
+  }
+  const int more = std::max(searching_budget(calibration) - calibration.budget.evaluations,
+                            std::max(calibration.budget.batch, 1));
+  out.push_back(
+      "No search took place: the start, its replicates and the confirmation took the whole "
+      "budget. " +
+      counted(static_cast<std::size_t>(more), "more evaluation") +
+      " would pay for a first batch of it.");
+}
+
 void on_verdict(const Calibration& calibration, const Fit& fit, Sentences& out) {
   if (fit.stop == StopReason::implausible) {
     out.emplace_back(
@@ -178,6 +195,7 @@ std::vector<std::string> remarks(const Outlook& outlook, const Fit& fit) {
         "; intervals and directions are the emulator's, learnt afterwards from its runs.");
   }
   on_verdict(calibration, fit, out);
+  on_search(calibration, fit, out);
   on_identification(calibration, fit, out);
   on_bounds(calibration, outlook, fit, out);
   on_optimism(outlook, fit, out);

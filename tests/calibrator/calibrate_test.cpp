@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 
 #include "calibrator/misfit.hpp"
+#include "calibrator/plan.hpp"
 #include "tests/support/bench_run.hpp"
 #include "tests/support/known_ledger.hpp"
 #include "tests/support/toy_study.hpp"
@@ -69,6 +70,28 @@ void check_complete(const toy::Study& study, const Fit& fit) {
 }
 
 }  // namespace
+
+TEST_CASE("a budget that leaves nothing to search with is told, and how much would",
+          "[calibrator]") {
+  toy::Study study = toy::two_of_three(0.3);
+  study.calibration.measurements[0].value += 100.0;  // out of reach: the start is no hit
+  Budget& budget = study.calibration.budget;
+  const auto searched = [](const Fit& fit) {
+    return std::ranges::count(fit.history, "search", &HistoryPoint::stage) > 0;
+  };
+  const int full = searching_budget(study.calibration);
+  const auto more = std::to_string(budget.batch) + " more evaluations";
+  budget.evaluations = full - budget.batch;
+  const Fit unsearched = solve(study);
+  REQUIRE(unsearched.stop == StopReason::budget);
+  REQUIRE_FALSE(searched(unsearched));
+  CHECK(mentions(unsearched, "No search took place"));
+  CHECK(mentions(unsearched, more));
+  budget.evaluations = full;
+  const Fit fit = solve(study);
+  CHECK(searched(fit));
+  CHECK_FALSE(mentions(fit, "No search took place"));
+}
 
 TEST_CASE("a known minimum is recovered and confirmed", "[calibrator]") {
   const toy::Study study = toy::two_of_three(0.3);
