@@ -265,8 +265,8 @@ void print_text(const Replicates& replicates) {
   for (const MeanObservation& seen : replicates.observations) {
     if (!seen.unread.empty()) std::cout << seen.name << ", " << seen.unread << "\n\n";
   }
-  if (experiment.fidelity == engine::Fidelity::draft) {
-    const engine::ExperimentInfo& info = *engine::find_experiment(experiment.name);
+  const engine::ExperimentInfo& info = *engine::find_experiment(experiment.name);
+  if (draft_is_in_force(info, experiment)) {
     for (const auto& seen : info.observables) {
       const std::string words = draft_words(info, seen);
       if (!words.empty()) std::cout << seen.name << ": " << words << "\n";

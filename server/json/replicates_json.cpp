@@ -120,9 +120,8 @@ std::string print_replicates(const Replicates& replicates, std::string_view engi
                {"unit", seen.unit.symbol}});
       if (!seen.unread.empty()) entry["unread"] = seen.unread;
     }
-    if (experiment.fidelity == engine::Fidelity::draft) {
-      document["draft_less_standard"] = draft_json(*engine::find_experiment(experiment.name));
-    }
+    const engine::ExperimentInfo& info = *engine::find_experiment(experiment.name);
+    if (draft_is_in_force(info, experiment)) document["draft_less_standard"] = draft_json(info);
   }
   document.update(effort_json(replicates.effort()));
   document["warnings"] = warnings(replicates);

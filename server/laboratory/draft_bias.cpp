@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/catalogue.hpp"
 #include "server/report/number_text.hpp"
 
 namespace repose::server {
@@ -41,6 +42,13 @@ DraftBias draft_bias(const engine::ExperimentInfo& info, const engine::Observabl
   if (found == measured.end()) return {};
   const double factor = observable.unit.factor;
   return {found->mean * factor, found->deviation * factor, found->sets};
+}
+
+bool draft_is_in_force(const engine::ExperimentInfo& info, const engine::Experiment& experiment) {
+  if (experiment.fidelity != engine::Fidelity::draft) return false;
+  engine::Experiment standard = experiment;
+  standard.fidelity = engine::Fidelity::standard;
+  return engine::resolved_settings(info, experiment) != engine::resolved_settings(info, standard);
 }
 
 std::string draft_words(const engine::ExperimentInfo& info,

@@ -18,6 +18,10 @@ struct DraftBias {
 /// What is known of an observable of an experiment.
 DraftBias draft_bias(const engine::ExperimentInfo& info, const engine::ObservableInfo& observable);
 
+/// Whether it is a draft, and some setting is left to its default of drafts: where all are given, a
+/// draft is what a standard experiment is.
+bool draft_is_in_force(const engine::ExperimentInfo& info, const engine::Experiment& experiment);
+
 /// "draft reads 1.6 deg above standard (standard deviation 0.7 deg, 12 sets)"; empty where it was
 /// not measured.
 std::string draft_words(const engine::ExperimentInfo& info,

@@ -11,6 +11,7 @@
 #include "server/cli/catalogue_text.hpp"
 #include "server/cli/reference_grain.hpp"
 #include "server/json/laboratory_json.hpp"
+#include "server/json/replicates_json.hpp"
 #include "server/json/text.hpp"
 #include "server/laboratory/draft_bias.hpp"
 #include "server/laboratory/drawings.hpp"
@@ -64,6 +65,30 @@ TEST_CASE("every observable tells how far its draft readings are from standard o
       CHECK_FALSE(draft_words(info, observable).empty());
     }
   }
+}
+
+TEST_CASE("a draft whose settings are all given reads as standard does: its bias is not told",
+          "[server]") {
+  const engine::ExperimentInfo& kettle = *engine::find_experiment("kettle");
+  engine::Experiment experiment{"kettle", engine::Fidelity::draft, {}};
+  CHECK(draft_is_in_force(kettle, experiment));
+  for (const engine::FieldInfo& field : kettle.settings) {
+    if (!std::isnan(field.draft)) {
+      CHECK(draft_is_in_force(kettle, experiment));
+      experiment.settings[std::string(field.name)] = field.null_value;
+    }
+  }
+  CHECK_FALSE(draft_is_in_force(kettle, experiment));
+  CHECK_FALSE(draft_is_in_force(kettle, {"kettle", engine::Fidelity::standard, {}}));
+
+  Replicates replicates;
+  replicates.trial.experiment = experiment;
+  replicates.evaluations.resize(1);
+  replicates.evaluations[0].outcome = std::vector<engine::Observation>{{"bulk_density", 740.0}};
+  replicates.wall_seconds = {1.0};
+  CHECK_FALSE(Contains("draft_less_standard").match(print_replicates(replicates, "test")));
+  replicates.trial.experiment.settings.clear();
+  CHECK_THAT(print_replicates(replicates, "test"), Contains("draft_less_standard"));
 }
 
 TEST_CASE("the bias of a draft is over the grains that were read at both fidelities", "[server]") {
