@@ -69,11 +69,36 @@ void inherit_source(db::Store& store, Submitted& submitted) {
   }
 }
 
+/// What a study says to extend is there, and so is the diagnosis of it: else it would begin without
+/// their runs, and nobody would know.
+Problems objections_to_extension(const db::Store& store, const Calibration& calibration) {
+  if (!calibration.extends) return {};
+  const calibrator::Extension& extends = *calibration.extends;
+  const std::string parent = std::to_string(extends.calibration);
+  if (!store.calibration(extends.calibration)) {
+    return {{"/extends/calibration",
+             "there is no calibration " + parent,
+             parent,
+             "the number of a calibration in this database; without \"extends\" it begins anew"}};
+  }
+  if (!extends.diagnosis) return {};
+  const auto diagnosis = store.diagnosis(*extends.diagnosis);
+  if (diagnosis && diagnosis->calibration == extends.calibration) return {};
+  const std::string found = std::to_string(*extends.diagnosis);
+  return {{"/extends/diagnosis",
+           "calibration " + parent + " has no diagnosis " + found,
+           found,
+           "the number of one of its diagnoses"}};
+}
+
 Answer<Submitted> read_submission(db::Store& store, std::string_view submission) {
   const auto resolved = resolve_submission(store, submission);
   if (!resolved) return Unexpected{resolved.error()};
   auto calibration = parse_calibration(resolved->study);
   if (!calibration) return Unexpected{invalid("the study", calibration.error())};
+  if (const Problems problems = objections_to_extension(store, *calibration); !problems.empty()) {
+    return Unexpected{invalid("the study", problems)};
+  }
   Submitted submitted{*std::move(calibration), resolved->source};
   inherit_source(store, submitted);
   return submitted;

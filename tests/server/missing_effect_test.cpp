@@ -147,6 +147,22 @@ TEST_CASE("what cannot be diagnosed or added is refused in words, without a run"
         Refusal::Kind::wrong_state);
 }
 
+TEST_CASE("a study that extends what is not there is refused", "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  json study = json::parse(hidden_drop_study(0.0));
+  const std::int64_t parent = read(service.submit(study.dump()))["id"];
+  const auto pointer = [&](std::int64_t calibration, const json& diagnosis) {
+    study["extends"] = {{"calibration", calibration}, {"effect", "air_drag"}};
+    if (!diagnosis.is_null()) study["extends"]["diagnosis"] = diagnosis;
+    const auto answer = service.submit(study.dump());
+    return answer ? "" : answer.error().problems.front().pointer;
+  };
+  CHECK(pointer(99, nullptr) == "/extends/calibration");
+  CHECK(pointer(parent, 7) == "/extends/diagnosis");
+  CHECK(pointer(parent, nullptr).empty());
+}
+
 TEST_CASE("a queued diagnosis is run in the background, and an extension too", "[server]") {
   const TemporaryFolder folder;
   std::int64_t id = 0, diagnosis = 0;
