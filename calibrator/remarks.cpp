@@ -48,6 +48,24 @@ void on_identification(const Calibration& calibration, const Fit& fit, Sentences
   }
 }
 
+/// A measurement that stands there twice, number for number, pulls as two.
+void on_repeats(const Calibration& calibration, Sentences& out) {
+  const auto& all = calibration.measurements;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (all[i].role != Role::fit || all[j].role != Role::fit || all[i].value != all[j].value ||
+          all[i].standard_error != all[j].standard_error || !is_same_quantity(all[i], all[j])) {
+        continue;
+      }
+      out.push_back("Measurements " + std::to_string(j + 1) + " and " + std::to_string(i + 1) +
+                    " are the same, " + measurement_name(all[i]) + " of " +
+                    quantity(all[i].value, all[i]) +
+                    ", and count twice: leave one out, unless it was measured twice.");
+      break;  // of three alike, the third is told of once
+    }
+  }
+}
+
 void on_bounds(const Calibration& calibration,
                const Outlook& outlook,
                const Fit& fit,
@@ -197,6 +215,7 @@ std::vector<std::string> remarks(const Outlook& outlook, const Fit& fit) {
   on_verdict(calibration, fit, out);
   on_search(calibration, fit, out);
   on_identification(calibration, fit, out);
+  on_repeats(calibration, out);
   on_bounds(calibration, outlook, fit, out);
   on_optimism(outlook, fit, out);
   on_noise(calibration, fit, out);

@@ -93,6 +93,20 @@ TEST_CASE("a budget that leaves nothing to search with is told, and how much wou
   CHECK_FALSE(mentions(fit, "No search took place"));
 }
 
+TEST_CASE("a measurement that stands twice in a study is named", "[calibrator]") {
+  toy::Study study = toy::two_of_three(0.3);
+  CHECK_FALSE(mentions(solve(study), "count twice"));
+  auto& measurements = study.calibration.measurements;
+  measurements.push_back(measurements.front());
+  const std::string words = "Measurements 1 and " + std::to_string(measurements.size());
+  CHECK(mentions(solve(study), words));
+  measurements.back().value += 0.01;  // another reading of it
+  CHECK_FALSE(mentions(solve(study), "count twice"));
+  measurements.back() = measurements.front();
+  measurements.back().role = Role::held_out;
+  CHECK_FALSE(mentions(solve(study), "count twice"));
+}
+
 TEST_CASE("a known minimum is recovered and confirmed", "[calibrator]") {
   const toy::Study study = toy::two_of_three(0.3);
   const Fit fit = solve(study);
