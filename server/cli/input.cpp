@@ -7,6 +7,7 @@
 #include <iostream>
 #include <iterator>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "engine/catalogue.hpp"
@@ -70,6 +71,13 @@ InputError no_experiment(const std::string& name) {
           {}};
 }
 
+void make_folder_of(const fs::path& database) {
+  std::error_code told_when_it_is_opened;
+  if (database.has_parent_path()) {
+    fs::create_directories(database.parent_path(), told_when_it_is_opened);
+  }
+}
+
 fs::path default_database() {
   const auto variable = [](const char* name) {
     const char* value = std::getenv(name);
@@ -81,7 +89,7 @@ fs::path default_database() {
     if (data.empty()) data = fs::path(variable("HOME")) / ".local" / "share";
     path = data / "repose" / "repose.db";
   }
-  if (path.has_parent_path()) fs::create_directories(path.parent_path());
+  make_folder_of(path);
   return path;
 }
 

@@ -29,6 +29,10 @@ int report_error(const InputError& error, bool json);
 /// What is wrong with the name of an experiment that there is not.
 InputError no_experiment(const std::string& name);
 
+/// Makes the folder of a database where it can; where it cannot, the database cannot be opened, and
+/// that is told in words of our own.
+void make_folder_of(const std::filesystem::path& database);
+
 /// $REPOSE_DB, else repose/repose.db in $XDG_DATA_HOME or ~/.local/share. The folder is made.
 std::filesystem::path default_database();
 

@@ -76,9 +76,7 @@ LaboratoryObserver progress() {
 /// Answers through the store of a database, so that what was interrupted goes on.
 template <class Ask>
 auto with_workers(const LaboratoryCommand& command, const Interrupt& interrupt, const Ask& ask) {
-  if (command.database.has_parent_path()) {
-    std::filesystem::create_directories(command.database.parent_path());
-  }
+  make_folder_of(command.database);
   db::Store store(command.database, db::Access::write);
   Workers workers(store, {.workers = command.workers, .program = own_program()});
   return ask(workers, interrupt.token());

@@ -64,9 +64,7 @@ class StudyProgress {
 };
 
 db::Store open_store(const std::filesystem::path& database) {
-  if (!database.parent_path().empty()) {
-    std::filesystem::create_directories(database.parent_path());
-  }
+  make_folder_of(database);
   return {database, db::Access::write};
 }
 

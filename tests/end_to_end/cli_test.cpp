@@ -243,6 +243,11 @@ TEST_CASE("where output cannot be written is told before the work, not after", "
   CHECK_THAT(refused("report 1 --db " + database + " --output " + folder.path.string()),
              Contains("is a folder"));
   CHECK_THAT(refused("lineage 1 --db " + database + " --report " + nowhere), Contains(nowhere));
+  for (const char* words : {"list", "trends", "bench fidelity", "study boac2010 --quick"}) {
+    INFO(words);
+    CHECK_THAT(refused(words + std::string(" --db ") + study + "/a.db"),
+               Contains(study + "/a.db") && !Contains("filesystem error"));
+  }
   const std::string in_file = study + "/frames";
   for (const char* words : {"evaluate drop --frames ", "trends --output ", "schema --write "}) {
     INFO(words);
