@@ -52,10 +52,11 @@ std::filesystem::path slow_study(const TemporaryFolder& folder) {
 
 pid_t start(const std::filesystem::path& study,
             const std::filesystem::path& database,
-            const std::filesystem::path& output) {
+            const std::filesystem::path& output,
+            const std::filesystem::path& errors = "/dev/null") {
   std::string command = "exec '" + repose_program + "' calibrate " + study.string() + " --db " +
                         database.string() + " --workers " + std::to_string(workers) +
-                        " --no-pictures --json > " + output.string() + " 2>/dev/null";
+                        " --no-pictures --json > " + output.string() + " 2> " + errors.string();
   std::string shell = "/bin/sh", flag = "-c";
   std::array<char*, 4> arguments{shell.data(), flag.data(), command.data(), nullptr};
   pid_t child = 0;
@@ -97,6 +98,28 @@ bool kill_at(pid_t child,
 }
 
 }  // namespace
+
+TEST_CASE("a calibration that is interrupted says how it goes on and how it is ended",
+          "[end_to_end]") {
+  const TemporaryFolder folder;
+  const auto study = slow_study(folder), database = folder / "a.db", errors = folder / "errors";
+  { const Store empty(database, Access::write); }
+  const pid_t child = start(study, database, folder / "answer.json", errors);
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (count(database, "evaluation") == 0) continue;
+    kill(child, SIGINT);
+    waitpid(child, &status, 0);
+    break;
+  }
+  REQUIRE(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 130);
+  const std::string told = read(errors), same = " --db " + database.string();
+  CHECK_THAT(told,
+             Catch::Contains("repose calibrate " + study.string() + same +
+                             " --workers 2 --no-pictures --json\n"));
+  CHECK_THAT(told, Catch::Contains("repose cancel 1" + same + "\n"));
+}
 
 TEST_CASE("kill -9 in the midst of evaluations costs none that is stored and no bit of the fit",
           "[end_to_end][slow]") {
