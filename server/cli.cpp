@@ -163,8 +163,8 @@ std::string objection_to_command(const CLI::App& group) {
   if (group.get_require_subcommand_min() == 0 || !group.get_subcommands().empty()) return "";
   std::vector<std::string> names;
   for (const CLI::App* command : group.get_subcommands([](const CLI::App*) { return true; })) {
-    if (!command->get_group().empty())
-      names.push_back(command->get_name());  // a hidden one has none
+    const bool is_hidden = command->get_group().empty();
+    if (!is_hidden) names.push_back(command->get_name());
   }
   const std::vector<std::string> words = group.remaining();
   if (words.empty()) return "which command? There are " + listed(names);

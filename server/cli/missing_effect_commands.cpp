@@ -114,7 +114,9 @@ int diagnose_command(const MissingEffectCommand& command) {
   if (interrupt.happened()) {
     std::cerr << "repose: stopped. Every finished run is kept; the same command takes it up.\n";
     const auto stopped = parse_diagnosis_record(*answer);
-    if (stopped) std::cerr << queued_text(stopped->id, Cancelled::diagnosis, command.database);
+    if (stopped && stopped->state == "queued") {
+      std::cerr << queued_text(stopped->id, Cancelled::diagnosis, command.database);
+    }
     return exit_code::interrupted;
   }
   if (json) {
