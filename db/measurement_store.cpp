@@ -1,5 +1,7 @@
 #include "db/measurement_store.hpp"
 
+#include <limits>
+
 #include "db/store_state.hpp"
 
 namespace repose::db {
@@ -11,6 +13,29 @@ constexpr std::string_view select_set =
 
 MeasurementSetRecord set_of(const Statement& row) {
   return {row.integer(0), row.text(1), row.integer(2), row.text(3), row.integer(4), row.text(5)};
+}
+
+constexpr std::string_view select_fit =
+    "SELECT c.id, c.name, c.state, c.created_at, c.started_at, c.finished_at, c.request_digest, "
+    "c.misfit, c.fit, s.material, m.name, m.version FROM calibration c "
+    "LEFT JOIN calibration_source s ON s.calibration_id = c.id "
+    "LEFT JOIN measurement_set m ON m.id = s.measurement_set_id ";
+
+FitRecord fit_of(const Statement& row) {
+  FitRecord record;
+  record.calibration.id = row.integer(0);
+  record.calibration.name = row.text(1);
+  record.calibration.state = row.text(2);
+  record.calibration.created_at = row.integer(3);
+  record.calibration.started_at = row.integer_or_null(4);
+  record.calibration.finished_at = row.integer_or_null(5);
+  record.calibration.request_digest = row.text(6);
+  record.calibration.misfit = row.real_or_null(7);
+  record.calibration.fit = row.text_or_null(8);
+  record.material = row.text_or_null(9);
+  record.set = row.text_or_null(10);
+  record.version = row.integer_or_null(11);
+  return record;
 }
 
 }  // namespace
@@ -104,35 +129,37 @@ std::optional<MeasurementSetRecord> MeasurementStore::set(std::int64_t id) const
 }
 
 std::vector<FitRecord> MeasurementStore::fits(const FitFilter& filter, int limit) const {
-  const std::scoped_lock hold(store_.state_->mutex);
-  Statement row = store_.state_->connection.prepare(
-      "SELECT c.id, c.name, c.state, c.created_at, c.started_at, c.finished_at, c.request_digest, "
-      "c.misfit, c.fit, s.material, m.name, m.version FROM calibration c "
-      "LEFT JOIN calibration_source s ON s.calibration_id = c.id "
-      "LEFT JOIN measurement_set m ON m.id = s.measurement_set_id "
+  return select_fits(
       "WHERE c.state = 'done' AND c.fit IS NOT NULL AND (?1 IS NULL OR s.material = ?1) "
-      "AND (?2 IS NULL OR c.name = ?2) AND (?3 IS NULL OR c.id < ?3) ORDER BY c.id DESC LIMIT ?4");
+      "AND (?2 IS NULL OR c.name = ?2) AND (?3 IS NULL OR c.id < ?3) ORDER BY c.id DESC LIMIT ?4",
+      filter,
+      limit);
+}
+
+std::vector<FitRecord> MeasurementStore::best_fits(const FitFilter& filter) const {
+  // Of equal misfits the newest stands.
+  return select_fits(
+      "WHERE c.id IN (SELECT id FROM (SELECT f.id, row_number() OVER "
+      "(PARTITION BY f.name, t.material ORDER BY f.misfit, f.id DESC) AS place "
+      "FROM calibration f LEFT JOIN calibration_source t ON t.calibration_id = f.id "
+      "WHERE f.fit IS NOT NULL AND f.misfit IS NOT NULL AND f.state = 'done' "
+      "AND (?1 IS NULL OR t.material = ?1) AND (?2 IS NULL OR f.name = ?2) "
+      "AND (?3 IS NULL OR f.id < ?3)) WHERE place = 1) ORDER BY c.name, s.material LIMIT ?4",
+      filter,
+      std::numeric_limits<int>::max());
+}
+
+std::vector<FitRecord> MeasurementStore::select_fits(std::string_view rest,
+                                                     const FitFilter& filter,
+                                                     int limit) const {
+  const std::scoped_lock hold(store_.state_->mutex);
+  Statement row = store_.state_->connection.prepare(std::string(select_fit) + std::string(rest));
   row.bind(filter.material)
       .bind(filter.name)
       .bind(filter.before)
       .bind(static_cast<std::int64_t>(limit));
   std::vector<FitRecord> records;
-  while (row.step()) {
-    FitRecord record;
-    record.calibration.id = row.integer(0);
-    record.calibration.name = row.text(1);
-    record.calibration.state = row.text(2);
-    record.calibration.created_at = row.integer(3);
-    record.calibration.started_at = row.integer_or_null(4);
-    record.calibration.finished_at = row.integer_or_null(5);
-    record.calibration.request_digest = row.text(6);
-    record.calibration.misfit = row.real_or_null(7);
-    record.calibration.fit = row.text_or_null(8);
-    record.material = row.text_or_null(9);
-    record.set = row.text_or_null(10);
-    record.version = row.integer_or_null(11);
-    records.push_back(std::move(record));
-  }
+  while (row.step()) records.push_back(fit_of(row));
   return records;
 }
 

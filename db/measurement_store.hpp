@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "db/store.hpp"
@@ -69,8 +70,13 @@ class MeasurementStore {
   [[nodiscard]] std::optional<MeasurementSetRecord> set(std::int64_t id) const;
   /// Of finished calibrations, newest first.
   [[nodiscard]] std::vector<FitRecord> fits(const FitFilter& filter, int limit) const;
+  /// The smallest misfit of every study's name and material, by name.
+  [[nodiscard]] std::vector<FitRecord> best_fits(const FitFilter& filter) const;
 
  private:
+  [[nodiscard]] std::vector<FitRecord> select_fits(std::string_view rest,
+                                                   const FitFilter& filter,
+                                                   int limit) const;
   Store& store_;
 };
 

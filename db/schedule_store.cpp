@@ -239,4 +239,15 @@ std::vector<PromotionRecord> ScheduleStore::promotions(std::int64_t schedule) co
   return records;
 }
 
+std::map<std::int64_t, std::vector<std::int64_t>> ScheduleStore::in_force() const {
+  const std::scoped_lock hold(store_.state_->mutex);
+  Statement row = store_.state_->connection.prepare(
+      "SELECT p.calibration_id, s.id FROM schedule s JOIN promotion p ON p.id = "
+      "(SELECT max(id) FROM promotion WHERE schedule_id = s.id) "
+      "WHERE s.removed_at IS NULL ORDER BY s.id");
+  std::map<std::int64_t, std::vector<std::int64_t>> schedules;
+  while (row.step()) schedules[row.integer(0)].push_back(row.integer(1));
+  return schedules;
+}
+
 }  // namespace repose::db

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -93,6 +94,9 @@ class ScheduleStore {
                std::int64_t now);
   /// Newest first: the first one is in force.
   [[nodiscard]] std::vector<PromotionRecord> promotions(std::int64_t schedule) const;
+  /// Which calibrations' fits are in force, each with the schedules (those not removed) that have
+  /// it so.
+  [[nodiscard]] std::map<std::int64_t, std::vector<std::int64_t>> in_force() const;
 
  private:
   [[nodiscard]] std::vector<NightRecord> select_nights(std::string_view rest,

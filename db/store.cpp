@@ -140,21 +140,6 @@ std::vector<std::int64_t> Store::in_state(std::string_view state) const {
   return state_->in_state("calibration", state);
 }
 
-std::vector<CalibrationRecord> Store::best_fits(const std::optional<std::string>& name) const {
-  const std::scoped_lock hold(state_->mutex);
-  // Of equal misfits the newest stands.
-  Statement row = state_->connection.prepare(
-      select_calibration(true,
-                         "WHERE id IN (SELECT id FROM (SELECT id, row_number() OVER "
-                         "(PARTITION BY name ORDER BY misfit, id DESC) AS place FROM calibration "
-                         "WHERE fit IS NOT NULL AND misfit IS NOT NULL AND state = 'done' "
-                         "AND (?1 IS NULL OR name = ?1)) WHERE place = 1) ORDER BY name"));
-  row.bind(name);
-  std::vector<CalibrationRecord> records;
-  while (row.step()) records.push_back(with_documents(row));
-  return records;
-}
-
 std::vector<CalibrationRecord> Store::children(std::int64_t calibration) const {
   const std::scoped_lock hold(state_->mutex);
   Statement row =

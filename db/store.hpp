@@ -58,9 +58,6 @@ class Store {
   /// The oldest queued or running one with that request, if any.
   [[nodiscard]] std::optional<CalibrationRecord> unfinished(const std::string& digest) const;
   [[nodiscard]] std::vector<std::int64_t> in_state(std::string_view state) const;  ///< oldest first
-  /// Finished ones with a fit, the smallest misfit of each name, or of one name.
-  [[nodiscard]] std::vector<CalibrationRecord> best_fits(
-      const std::optional<std::string>& name) const;
   [[nodiscard]] std::map<std::string, std::int64_t> count_by_state() const;
 
   /// queued -> running; false where it is not queued.

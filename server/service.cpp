@@ -15,7 +15,7 @@
 #include "server/jobs/workers.hpp"
 #include "server/json/calibration_json.hpp"
 #include "server/json/event_json.hpp"
-#include "server/json/fit_json.hpp"
+#include "server/json/fit_list_json.hpp"
 #include "server/json/job_json.hpp"
 #include "server/json/measurement_set_json.hpp"
 #include "server/json/missing_effect_request.hpp"
@@ -163,8 +163,8 @@ Answer<Page> Service::evaluations(std::int64_t calibration,
   return print_used(state_->store.used(calibration, limit, after), limit);
 }
 
-std::string Service::best_fits(const std::optional<std::string>& name) const {
-  return print_best_fits(state_->store.best_fits(name));
+std::string Service::best_fits(const db::FitFilter& filter) const {
+  return print_best_fits(state_->listed(db::MeasurementStore(state_->store).best_fits(filter)));
 }
 
 Answer<std::string> Service::cancel(std::int64_t id) {
@@ -363,7 +363,7 @@ Page Service::measurement_sets(int limit, const std::optional<std::string>& afte
 }
 
 Page Service::fits(const db::FitFilter& filter, int limit) const {
-  return print_fits(db::MeasurementStore(state_->store).fits(filter, limit), limit);
+  return print_fits(state_->listed(db::MeasurementStore(state_->store).fits(filter, limit)), limit);
 }
 
 Answer<Page> Service::events(const std::optional<std::int64_t>& calibration,

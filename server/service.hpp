@@ -119,8 +119,8 @@ class Service {
                                          int limit,
                                          std::optional<std::int64_t> after) const;
   /// {"items":[{"calibration","name","material","misfit","best",...}]}: the best finished fit of
-  /// every study name, or of one.
-  [[nodiscard]] std::string best_fits(const std::optional<std::string>& name) const;
+  /// every study's name and material.
+  [[nodiscard]] std::string best_fits(const db::FitFilter& filter) const;
   Answer<std::string> cancel(std::int64_t id);
 
   // The missing effect: see server/missing_effect.hpp.
@@ -163,8 +163,8 @@ class Service {
                                                     bool as_table) const;
   /// {"items":[{"name","version","material","created_at"}],"next"}, the newest versions by name
   [[nodiscard]] Page measurement_sets(int limit, const std::optional<std::string>& after) const;
-  /// {"items":[{"calibration","parameters","not_determined","best","provenance",...}],"next"},
-  /// newest first
+  /// {"items":[{"calibration","quality","in_force","parameters","not_determined","best",
+  /// "provenance",...}],"next"}, newest first
   [[nodiscard]] Page fits(const db::FitFilter& filter, int limit) const;
 
   // Events: what happened to a calibration, or to all, in order.

@@ -6,6 +6,7 @@
 
 #include "calibrator/probe.hpp"
 #include "db/attempt_store.hpp"
+#include "db/schedule_store.hpp"
 #include "server/jobs/clock.hpp"
 #include "server/json/calibration_json.hpp"
 #include "server/json/fit_json.hpp"
@@ -276,6 +277,19 @@ void Service::State::run_job(const Job& job, const std::stop_token& stop) {
   // The store itself fails (a full disk), or the host: the row stays as it is, and is taken up when
   // it can be.
   if (!ran) strand(job);
+}
+
+std::vector<ListedFit> Service::State::listed(std::vector<db::FitRecord> records) {
+  const auto in_force = db::ScheduleStore(store).in_force();
+  std::vector<ListedFit> fits;
+  for (db::FitRecord& record : records) {
+    const std::int64_t id = record.calibration.id;
+    const auto schedules = in_force.find(id);
+    fits.push_back({std::move(record),
+                    fit_qualities.of(store, id),
+                    schedules == in_force.end() ? std::vector<std::int64_t>{} : schedules->second});
+  }
+  return fits;
 }
 
 }  // namespace repose::server

@@ -15,10 +15,12 @@
 #include "calibrator/calibration.hpp"
 #include "calibrator/fit.hpp"
 #include "db/store.hpp"
+#include "server/fit_qualities.hpp"
 #include "server/jobs/failure_log.hpp"
 #include "server/jobs/scheduler.hpp"
 #include "server/jobs/watch.hpp"
 #include "server/jobs/workers.hpp"
+#include "server/json/fit_list_json.hpp"
 #include "server/service.hpp"
 #include "server/webhooks/post.hpp"
 
@@ -55,6 +57,8 @@ struct Service::State {
   Schedule::Cancelled cancel(const Job& job);
   bool take_cancel(const Job& job);
   void strand(const Job& job);
+  /// With what is known of each beside its row.
+  std::vector<ListedFit> listed(std::vector<db::FitRecord> records);
 
   db::Store store;
   WorkerOptions worker_options;
@@ -63,6 +67,7 @@ struct Service::State {
   Post post;
   Readiness readiness;
   FailureLog failures;
+  FitQualities fit_qualities;
   std::mutex nights;  ///< held while nights are ended
   /// Of the two sets, and held for nothing but a look or a change: a request may hold the store's
   /// when it comes here, so who holds this one must not wait for the store.

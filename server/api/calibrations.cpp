@@ -54,9 +54,9 @@ Reply export_fit(Service& service, const Request& request) {
 
 Reply list_best_fits(Service& service, const Request& request) {
   Query query(request);
-  const auto name = query.text("name");
+  const db::FitFilter filter{.material = query.text("material"), .name = query.text("name")};
   if (!query.problems().empty()) return query.refusal();
-  return {.status = 200, .body = service.best_fits(name)};
+  return {.status = 200, .body = service.best_fits(filter)};
 }
 
 }  // namespace repose::server::handlers

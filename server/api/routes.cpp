@@ -44,8 +44,10 @@ constexpr std::array<QueryField, 2> set_list_fields{{
 constexpr std::array<QueryField, 1> version_field{{{"version", "which; else the newest"}}};
 constexpr std::array<QueryField, 1> table_fields{
     {{"material", "what was measured, where a table is sent", false}}};
-constexpr std::array<QueryField, 1> best_fit_fields{
-    {{"name", "only of the study of that name", false}}};
+constexpr std::array<QueryField, 2> best_fit_fields{{
+    {"material", "only of that material", false},
+    {"name", "only of the study of that name", false},
+}};
 
 constexpr std::string_view json = "application/json", stream = "text/event-stream",
                            table_form = "text/csv";
@@ -74,7 +76,7 @@ constexpr std::array<Route, 43> table{{
      "", 200, "measurement_set", version_field, handlers::get_measurement_set, json, {}, table_form},
     {"PUT", "/v1/measurement-sets/{name}", "putMeasurementSet", "Keep a new version of a set, sent as JSON or CSV.",
      "measurement_set_content", 200, "measurement_set", table_fields, handlers::put_measurement_set, json, {}, table_form},
-    {"GET", "/v1/fits", "listFits", "Get fits with their intervals, what they leave open, and where they are from.",
+    {"GET", "/v1/fits", "listFits", "Get fits with their intervals, how well they meet their measurements, and where they are from.",
      "", 200, "fit_list", fit_fields, handlers::list_fits},
     {"GET", "/v1/calibrations/{id}/comparison", "getComparison", "Compare a finished calibration with its measurements.",
      "", 200, "comparison", {}, handlers::get_comparison},
@@ -90,7 +92,7 @@ constexpr std::array<Route, 43> table{{
      "", 200, "diagnosis_document", {}, handlers::get_diagnosis},
     {"DELETE", "/v1/diagnoses/{id}", "cancelDiagnosis", "Cancel a diagnosis that is not finished.",
      "", 202, "diagnosis_document", {}, handlers::cancel_diagnosis},
-    {"GET", "/v1/best-fits", "listBestFits", "Get the best fit of every study, or of one.",
+    {"GET", "/v1/best-fits", "listBestFits", "Get the best fit of every study and material: the smallest misfit.",
      "", 200, "best_fit_list", best_fit_fields, handlers::list_best_fits},
     {"GET", "/v1/catalogue", "getCatalogue", "Get effects, experiments, material properties and units.",
      "", 200, "catalogue", {}, handlers::get_catalogue},

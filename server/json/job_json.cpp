@@ -57,25 +57,6 @@ Page print_used(const std::vector<db::UsedEvaluation>& used, int limit) {
   return print_page(std::move(items), limit, used.empty() ? Json() : Json(used.back().ordinal));
 }
 
-std::string print_best_fits(const std::vector<db::CalibrationRecord>& records) {
-  Json items = Json::array();
-  for (const auto& record : records) {
-    Json fit = document_or_null(record.fit);
-    Json item;
-    item["calibration"] = record.id;
-    item["name"] = record.name;
-    item["misfit"] = record.misfit ? number_or_null(*record.misfit) : Json(nullptr);
-    item["finished_at"] = time_or_null(record.finished_at);
-    item["stop"] = fit.value("stop", Json(nullptr));
-    item["parameters"] = fit.value("parameters", Json::array());
-    item["best"] = fit.value("best", Json(nullptr));
-    items.push_back(std::move(item));
-  }
-  Json json;
-  json["items"] = std::move(items);
-  return to_text(json);
-}
-
 std::string print_health(const std::string& database,
                          const std::map<std::string, std::int64_t>& jobs) {
   Json json;

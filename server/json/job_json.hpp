@@ -23,9 +23,6 @@ Page print_jobs(const std::vector<db::CalibrationRecord>& records, int limit);
 
 Page print_used(const std::vector<db::UsedEvaluation>& used, int limit);
 
-/// {"items":[{"calibration","name","misfit","finished_at","parameters"}]}
-std::string print_best_fits(const std::vector<db::CalibrationRecord>& records);
-
 std::string print_health(const std::string& database,
                          const std::map<std::string, std::int64_t>& jobs);
 

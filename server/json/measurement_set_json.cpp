@@ -213,17 +213,6 @@ Json record_head(const db::MeasurementSetRecord& record) {
               {"created_at", print_time(record.created_at)}};
 }
 
-Json not_determined(const Json& parameters) {
-  Json result = Json::array();
-  for (const Json& parameter : parameters) {
-    if (parameter.value("determined", true)) continue;
-    Json key{{"field", parameter["field"]}};
-    if (parameter.contains("between")) key["between"] = parameter["between"];
-    result.push_back(std::move(key));
-  }
-  return result;
-}
-
 }  // namespace
 
 engine::Result<MeasurementSet, Problems> parse_measurement_set(std::string_view text) {
@@ -329,34 +318,6 @@ std::string with_measurements(std::string_view study, std::string_view measureme
   Json json = Json::parse(study);
   json["measurements"] = Json::parse(measurements);
   return to_text(json);
-}
-
-Page print_fits(const std::vector<db::FitRecord>& records, int limit) {
-  Json items = Json::array();
-  for (const auto& [calibration, material, set, version] : records) {
-    const Json fit = Json::parse(calibration.fit.value_or("{}"));
-    const std::string address = "/v1/calibrations/" + std::to_string(calibration.id);
-    Json item{{"calibration", calibration.id},
-              {"name", calibration.name},
-              {"material", material ? Json(*material) : Json(nullptr)},
-              {"misfit", calibration.misfit ? number_or_null(*calibration.misfit) : Json(nullptr)},
-              {"parameters", fit.value("parameters", Json::array())}};
-    item["not_determined"] = not_determined(item["parameters"]);
-    item["best"] = fit.value("best", Json::array());
-    item["remarks"] = fit.value("remarks", Json::array());
-    item["provenance"] = {
-        {"calibration", address},
-        {"evaluations", address + "/evaluations"},
-        {"study_digest", calibration.request_digest},
-        {"measurement_set",
-         set ? Json{{"name", *set}, {"version", version.value_or(0)}} : Json(nullptr)},
-        {"engine_version", fit.value("engine_version", Json(nullptr))},
-        {"seed", fit.value("seed", Json(nullptr))},
-        {"finished_at", print_time(calibration.finished_at.value_or(0))}};
-    items.push_back(std::move(item));
-  }
-  const Json last = records.empty() ? Json() : Json(records.back().calibration.id);
-  return print_page(std::move(items), limit, last);
 }
 
 }  // namespace repose::server

@@ -47,8 +47,4 @@ engine::Result<Submission, Problems> parse_submission(std::string_view text);
 /// The study with the measurements of a set.
 std::string with_measurements(std::string_view study, std::string_view measurements);
 
-/// {"items":[{"calibration","name","material","measurement_set","finished_at","misfit",
-/// "parameters","not_determined","best","remarks","provenance"}],"next"}
-Page print_fits(const std::vector<db::FitRecord>& records, int limit);
-
 }  // namespace repose::server

@@ -55,6 +55,25 @@ TEST_CASE("the same night begins once, and ends once with its promotion", "[db]"
   CHECK(schedules.promotions(id)[0].reason == "again");
 }
 
+TEST_CASE("a fit is in force where it is the last that a schedule promoted", "[db]") {
+  const TemporaryFolder folder;
+  Store store(folder / "a.db", Access::write);
+  ScheduleStore schedules(store);
+  const auto one = store.add_calibration("n", "{}", "d", 1);
+  const auto two = store.add_calibration("n", "{}", "e", 1);
+  const auto a = schedules.add("a", "{}", 10);
+  const auto b = schedules.add("b", "{}", 10);
+  const auto c = schedules.add("c", "{}", 10);
+  schedules.promote(a, two, "", 11);
+  schedules.promote(a, one, "", 12);
+  schedules.promote(b, one, "", 13);
+  schedules.promote(c, two, "", 14);
+  using InForce = std::map<std::int64_t, std::vector<std::int64_t>>;
+  CHECK(schedules.in_force() == InForce{{one, {a, b}}, {two, {c}}});
+  schedules.remove(c, 20);
+  CHECK(schedules.in_force() == InForce{{one, {a, b}}});
+}
+
 TEST_CASE("the events of a night and of a promotion name their schedule", "[db]") {
   const TemporaryFolder folder;
   Store store(folder / "a.db", Access::write);

@@ -111,24 +111,6 @@ TEST_CASE("lists are newest first and page by id", "[db]") {
   CHECK(store.calibrations(10, 1).empty());
 }
 
-TEST_CASE("the best fit of a name is its smallest misfit", "[db]") {
-  const TemporaryFolder folder;
-  Store store(folder / "a.db", Access::write);
-  const auto finish = [&store](const std::string& name, const std::string& state, double misfit) {
-    store.finish(store.add_calibration(name, "{}", "d", 1), state, "{}", misfit, std::nullopt, 2);
-  };
-  finish("a", "done", 3.0);
-  finish("a", "done", 1.0);
-  finish("a", "failed", 0.1);
-  finish("b", "done", 2.0);
-  const auto all = store.best_fits(std::nullopt);
-  REQUIRE(all.size() == 2);
-  CHECK(all[0].misfit == 1.0);
-  CHECK(all[1].name == "b");
-  CHECK(store.best_fits("b").size() == 1);
-  CHECK(store.best_fits("c").empty());
-}
-
 TEST_CASE("the calibrations that extend one are found without reading the others", "[db]") {
   const TemporaryFolder folder;
   {

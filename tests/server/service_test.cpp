@@ -148,10 +148,56 @@ TEST_CASE("what is stored can be read while a service runs", "[server]") {
   const Service reader(options);
   CHECK(read(reader.calibration(id)).state == "done");
   CHECK(parse_items(reader.calibrations(10, std::nullopt).document).size() == 1);
-  CHECK(reader.best_fits(std::nullopt).find("\"parameters\":[{") != std::string::npos);
-  CHECK(reader.best_fits("another").find("\"items\":[]") != std::string::npos);
+  CHECK(reader.best_fits({}).find("\"parameters\":[{") != std::string::npos);
+  CHECK(reader.best_fits({.name = "another"}).find("\"items\":[]") != std::string::npos);
   CHECK(reader.evaluations(id, 3, std::nullopt)->next == "2");
   CHECK_THROWS_AS(Service(in(folder)), db::Error);
+}
+
+TEST_CASE("a list of fits tells a good one from a bad one, and two materials apart", "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  Json study = Json::parse(drop_study());
+  study["material"] = "glass";
+  REQUIRE(service.calibrate(to_text(study), {}, {}));
+  study["material"] = "steel";
+  study["seed"] = 2;
+  Json other = study["measurements"][0];  // of another height, and far from what one model has
+  other["value"] = 0.3;
+  other["settings"] = {{"height", {{"value", 100}, {"unit", "mm"}}}};
+  study["measurements"].push_back(other);
+  REQUIRE(service.calibrate(to_text(study), {}, {}));
+  REQUIRE(service.add_schedule(to_text(Json{{"name", "nightly"},
+                                            {"cron", "30 2 * * *"},
+                                            {"time_zone", "UTC"},
+                                            {"start_from", 1},
+                                            {"study", study}})));
+
+  const Json fits = Json::parse(service.fits({}, 10).document)["items"];
+  REQUIRE(fits.size() == 2);
+  const Json &bad = fits[0], &good = fits[1];
+  CHECK(bad["stop"] == "budget");
+  CHECK(bad["quality"]["freedom"] == 1);
+  CHECK(bad["quality"]["p"] < 0.01);
+  CHECK(bad["in_force"] == Json::array());
+  CHECK(good["stop"] == "hit");
+  CHECK(good["quality"]["p"] > 0.01);
+  CHECK(good["in_force"] == Json{1});
+  for (const Json& fit : fits) {
+    const auto comparison = service.compare(fit["calibration"], {});
+    REQUIRE(comparison);
+    for (const char* member : {"misfit", "freedom", "p", "fitted_z"}) {
+      CHECK(fit["quality"][member] == Json::parse(*comparison)[member]);
+    }
+  }
+
+  const Json best = Json::parse(service.best_fits({}))["items"];
+  REQUIRE(best.size() == 2);
+  CHECK(best[0]["name"] == best[1]["name"]);
+  CHECK(best[0]["material"] == "glass");
+  CHECK(best[0]["quality"] == good["quality"]);
+  CHECK(best[0]["in_force"] == Json{1});
+  CHECK(best[1]["material"] == "steel");
 }
 
 TEST_CASE("a warm start takes over what the store had, and a replay of it the same", "[server]") {
