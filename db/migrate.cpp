@@ -72,6 +72,10 @@ bool is_older(Connection& connection) {
 
 void migrate(Connection& connection, std::int64_t up_to) {
   check_schema(connection);
+  // A table that is made again is dropped while others refer to it. Whether what they refer to is
+  // there is looked up at each end; the setting itself changes nothing within a transaction.
+  const std::int64_t watched = pragma(connection, "foreign_keys");
+  connection.run("PRAGMA foreign_keys = OFF");
   for (std::int64_t version = pragma(connection, "user_version"); version < up_to; ++version) {
     Transaction transaction(connection);
     connection.run(std::string(embedded_migrations[static_cast<std::size_t>(version)].second));
@@ -82,6 +86,7 @@ void migrate(Connection& connection, std::int64_t up_to) {
     }
     transaction.commit();
   }
+  connection.run("PRAGMA foreign_keys = " + std::to_string(watched));
 }
 
 }  // namespace repose::db

@@ -18,18 +18,30 @@ namespace repose::server {
 inline constexpr std::string_view secret_prefix = "whsec_";
 
 /// What may be asked for: every kind of event, and the beginnings that several share.
-inline constexpr std::array<std::string_view, 22> event_kinds{
-    "calibration.*",         "calibration.queued",
-    "calibration.running",   "calibration.progress",
-    "calibration.done",      "calibration.failed",
-    "calibration.cancelled", "diagnosis.*",
-    "diagnosis.queued",      "diagnosis.running",
-    "diagnosis.done",        "diagnosis.failed",
-    "diagnosis.cancelled",   "night.*",
-    "night.first",           "night.kept",
-    "night.moved",           "night.model_no_longer_adequate",
-    "night.failed",          "night.skipped",
-    "night.drift",           "promotion",
+inline constexpr std::array<std::string_view, 23> event_kinds{
+    "calibration.*",
+    "calibration.queued",
+    "calibration.running",
+    "calibration.progress",
+    "calibration.done",
+    "calibration.failed",
+    "calibration.cancelled",
+    "diagnosis.*",
+    "diagnosis.queued",
+    "diagnosis.running",
+    "diagnosis.done",
+    "diagnosis.failed",
+    "diagnosis.cancelled",
+    "night.*",
+    "night.first",
+    "night.kept",
+    "night.moved",
+    "night.model_no_longer_adequate",
+    "night.failed",
+    "night.skipped",
+    "night.unchanged",
+    "night.drift",
+    "promotion",
 };
 
 struct WebhookContent {

@@ -123,7 +123,7 @@ std::optional<std::int64_t> prepare(db::Store& store,
   if (before && is_unchanged(store, study, *before)) {
     end(schedules,
         night.id,
-        {.state = "done", .outcome = "kept"},
+        {.state = "done", .outcome = "unchanged"},
         "no measurement has changed since calibration " + std::to_string(*before),
         now);
     return std::nullopt;

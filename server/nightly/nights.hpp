@@ -1,5 +1,5 @@
 /// Nights: what a schedule does at its times. A night takes the schedule's study as it is now;
-/// where nothing of it has changed, it is over. Else it holds the promoted fit against it, searches
+/// where nothing of it has changed, it is over (unchanged). Else it holds the promoted fit against it, searches
 /// on where that fails, and publishes what came of it:
 ///
 ///   first                      there was no fit before

@@ -6,6 +6,8 @@
 #include <catch2/catch.hpp>
 
 #include "db/backup.hpp"
+#include "db/event_store.hpp"
+#include "db/schedule_store.hpp"
 #include "db/store.hpp"
 #include "tests/support/database_rows.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -18,7 +20,7 @@ using repose::tests::TemporaryFolder;
 namespace {
 
 /// Rows of every kind: the first schema that has them, and how a program of that time wrote them.
-constexpr std::array<std::pair<int, const char*>, 10> rows{{
+constexpr std::array<std::pair<int, const char*>, 12> rows{{
     {1,
      "INSERT INTO evaluation (key, question, answer, seconds, engine_version, created_at) VALUES "
      "('a', 'qa', 'aa', 1.5, 'v', 1), ('b', 'qb', 'ab', 2.5, 'v', 2)"},
@@ -26,13 +28,17 @@ constexpr std::array<std::pair<int, const char*>, 10> rows{{
      "INSERT INTO calibration (id, name, state, created_at, started_at, finished_at, request, "
      "request_digest, progress, fit, misfit, error) VALUES "
      "(1, 'one', 'done', 1, 2, 3, '{}', 'd1', '{\"stage\":1}', '{}', 0.5, NULL), "
-     "(2, 'two', 'done', 4, 5, 6, '{\"extends\":{\"calibration\":1,\"effect\":\"e\"}}', 'd2', "
-     "NULL, '{}', 0.25, NULL), "
+     "(2, 'two', 'running', 4, 5, NULL, '{\"extends\":{\"calibration\":1,\"effect\":\"e\"}}', "
+     "'d2', NULL, NULL, NULL, NULL), "
      "(3, 'three', 'failed', 7, 8, 9, '{}', 'd3', NULL, NULL, NULL, 'why'), "
      "(4, 'four', 'cancelled', 10, NULL, 11, '{}', 'd4', NULL, NULL, NULL, NULL), "
      "(5, 'five', 'running', 12, 13, NULL, '{}', 'd5', NULL, NULL, NULL, NULL), "
      "(6, 'six', 'queued', 14, NULL, NULL, 'no document', 'd6', NULL, NULL, NULL, NULL); "
      "UPDATE calibration SET progress = '{\"stage\":2,\"predicted\":[]}' WHERE id = 5"},
+    {12, "UPDATE calibration SET parent_id = 1 WHERE id = 2"},
+    {1,
+     "UPDATE calibration SET state = 'done', finished_at = 6, fit = '{}', misfit = 0.25 "
+     "WHERE id = 2"},
     {1,
      "INSERT INTO calibration_evaluation (calibration_id, ordinal, key) VALUES (1, 0, 'a'), "
      "(1, 1, 'b'), (2, 0, 'a')"},
@@ -104,6 +110,25 @@ TEST_CASE("a database of every earlier schema is brought up to date with all of 
     CHECK(rows_of(database, questions) == before);
     CHECK(examine(database) == std::vector<std::string>{});
   }
+}
+
+TEST_CASE("a night that ran when its database was brought up to date ends as every other", "[db]") {
+  const TemporaryFolder folder;
+  const auto database = folder / "a.db";
+  make(database, 12);
+  {
+    Store store(database, Access::write);
+    ScheduleStore nights(store);
+    CHECK(nights.end_night(2, {.state = "done", .outcome = "unchanged", .result = "{}"}, 22));
+    CHECK(EventStore(store).events(std::nullopt, 0, 100).back().kind == "night.unchanged");
+    CHECK(nights.begin_night(1, 30, 31) == 3);
+    CHECK_THROWS_AS(nights.begin_night(99, 40, 41), Error);  // a schedule that is not there
+  }
+  Connection connection(database, Connection::Mode::write);
+  CHECK_THROWS_AS(connection.run("UPDATE night SET result = '[]' WHERE id = 1"), Error);
+  CHECK_THROWS_AS(connection.run("UPDATE night SET state = 'done', outcome = 'well', "
+                                 "finished_at = 32 WHERE id = 3"),
+                  Error);
 }
 
 TEST_CASE("before a database is changed for a newer program it is copied, once", "[db]") {

@@ -110,8 +110,8 @@ class Plant {
 }  // namespace
 
 TEST_CASE(
-    "the first night fits, a night without news is kept, a small change is kept, a large one "
-    "moves the fit",
+    "the first night fits, a night without news judges nothing, a small change keeps the fit, a "
+    "large one moves it",
     "[server]") {
   Plant plant;
   CHECK(plant.add(0.6)["next_at"] == "2026-03-02T01:30:00.000000Z");
@@ -125,7 +125,7 @@ TEST_CASE(
 
   plant.now += 24h;
   plant.run();
-  CHECK(plant.last()["outcome"] == "kept");
+  CHECK(plant.last()["outcome"] == "unchanged");
   CHECK(plant.last()["calibration"].is_null());
 
   plant.measure(0.605);
@@ -163,6 +163,26 @@ TEST_CASE("a measurement that no parameter can meet is a model that is no longer
   // One measurement and one parameter are too little for a diagnosis, and the night says so.
   CHECK_THAT(plant.last()["result"]["reason"].get<std::string>(),
              Catch::Contains("no diagnosis") && Catch::Contains("cannot be tested"));
+  // Without news the night after says nothing of the fit in force, which has failed.
+  plant.now += 24h;
+  plant.run();
+  CHECK(plant.last()["outcome"] == "unchanged");
+}
+
+TEST_CASE("a night without news keeps no fit where none is in force", "[server][slow]") {
+  Plant plant;
+  Json study = drop_study(0.6);
+  Json other = study["measurements"][0];  // of another height, and far from what one model has
+  other["value"] = 0.35;
+  other["settings"] = {{"height", {{"value", 100}, {"unit", "mm"}}}};
+  study["measurements"].push_back(other);
+  REQUIRE(plant.service().add_schedule(to_text(schedule_of(study))));
+  for (const char* outcome : {"model_no_longer_adequate", "unchanged"}) {
+    plant.now += 24h;
+    plant.run();
+    CHECK(plant.last()["outcome"] == outcome);
+    CHECK(plant.standing()["promoted"].is_null());
+  }
 }
 
 TEST_CASE("a fit that was in force is put in force again by hand, another one is not", "[server]") {
@@ -208,7 +228,7 @@ TEST_CASE("a night takes the measurements of a set as they are that night, and t
   study["measurement_set"] = {{"name", "plant"}};
   REQUIRE(plant.service().add_schedule(to_text(schedule_of(study))));
   for (const auto& [value, outcome] :
-       {std::pair{"0.6", "first"}, std::pair{"0.6", "kept"}, std::pair{"0.7", "moved"}}) {
+       {std::pair{"0.6", "first"}, std::pair{"0.6", "unchanged"}, std::pair{"0.7", "moved"}}) {
     put(value);
     plant.now += 24h;
     plant.run();
@@ -224,7 +244,7 @@ TEST_CASE("a night takes the measurements of a set as they are that night, and t
     if (kind.starts_with("night") || kind == "promotion") kinds.push_back(kind);
   }
   CHECK(kinds == std::vector<std::string>{
-                     "night.first", "promotion", "night.kept", "night.moved", "promotion"});
+                     "night.first", "promotion", "night.unchanged", "night.moved", "promotion"});
 }
 
 TEST_CASE("a night that was cut off is taken up where it was", "[server]") {
