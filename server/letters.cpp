@@ -54,15 +54,17 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-bool has_control_letter(std::string_view text) {
-  unsigned char before = 0;
+bool has_control_letter(std::string_view text) { return without_control_letters(text) != text; }
+
+std::string without_control_letters(std::string_view text) {
+  std::string result;
   for (const char letter : text) {
     const auto code = static_cast<unsigned char>(letter);
-    if (code < 0x20 || code == 0x7f) return true;
-    if (before == 0xc2 && code >= 0x80 && code < 0xa0) return true;
-    before = code;
+    const bool second = !result.empty() && result.back() == '\xc2' && code >= 0x80 && code < 0xa0;
+    if (second) result.pop_back();
+    result += second || code < 0x20 || code == 0x7f ? ' ' : letter;
   }
-  return false;
+  return result;
 }
 
 }  // namespace repose::server

@@ -18,5 +18,7 @@ bool is_utf8(std::string_view text);
 /// Whether there is a control character of ASCII or of Latin-1 (in UTF-8): on a terminal or in a
 /// list of lines it would not be what it stands for.
 bool has_control_letter(std::string_view text);
+/// The same with a blank in the place of each.
+std::string without_control_letters(std::string_view text);
 
 }  // namespace repose::server

@@ -16,6 +16,7 @@
 #include "server/json/diagnosis_json.hpp"
 #include "server/json/evaluation_json.hpp"
 #include "server/json/fit_json.hpp"
+#include "server/json/labels.hpp"
 #include "server/json/missing_effect_json.hpp"
 #include "server/json/missing_effect_request.hpp"
 #include "server/json/place.hpp"
@@ -223,7 +224,7 @@ Answer<std::string> extension_study(const db::Store& store,
     return Unexpected{refusal(Refusal::Kind::wrong_state,
                               effect + " cannot be weighed by this study: " + found->objection)};
   }
-  Calibration child = own->calibration;
+  Calibration child = with_clean_labels(own->calibration);  // it is submitted anew
   child.name += " + " + effect;
   calibrator::extend(*found, own->fit.best, child);
   child.extends = calibrator::Extension{id, std::nullopt, effect};

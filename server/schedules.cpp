@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "db/schedule_store.hpp"
+#include "server/json/labels.hpp"
 #include "server/json/schedule_json.hpp"
 #include "server/nightly/continuation.hpp"
 #include "server/nightly/nights.hpp"
@@ -30,6 +31,9 @@ Refusal invalid(const char* what, Problems problems) {
 
 /// The schedule, and that the calibration to start from is one that can be.
 Answer<NightlySchedule> read(db::Store& store, std::string_view document) {
+  if (auto labels = problems_of_schedule_labels(document); !labels.empty()) {
+    return Unexpected{invalid("the schedule", std::move(labels))};
+  }
   auto schedule = read_schedule(store, document);
   if (!schedule) return Unexpected{invalid("the schedule", schedule.error())};
   if (!schedule->start_from) return *std::move(schedule);

@@ -17,6 +17,7 @@
 #include "server/json/event_json.hpp"
 #include "server/json/fit_list_json.hpp"
 #include "server/json/job_json.hpp"
+#include "server/json/labels.hpp"
 #include "server/json/measurement_set_json.hpp"
 #include "server/json/missing_effect_request.hpp"
 #include "server/json/own_material_json.hpp"
@@ -64,7 +65,8 @@ void inherit_source(db::Store& store, Submitted& submitted) {
   const db::SourceRecord source = db::MeasurementStore(store).source(record->id);
   if (!submitted.source.material) submitted.source.material = source.material;
   const bool same_material = submitted.source.material == source.material;
-  if (!submitted.source.set && same_material && own.measurements == parent->measurements) {
+  if (!submitted.source.set && same_material &&
+      own.measurements == with_clean_labels(*parent).measurements) {
     submitted.source.set = source.set;
   }
 }
@@ -92,6 +94,9 @@ Problems objections_to_extension(const db::Store& store, const Calibration& cali
 }
 
 Answer<Submitted> read_submission(db::Store& store, std::string_view submission) {
+  if (const auto labels = problems_of_labels(submission); !labels.empty()) {
+    return Unexpected{invalid("the study", labels)};
+  }
   const auto resolved = resolve_submission(store, submission);
   if (!resolved) return Unexpected{resolved.error()};
   auto calibration = parse_calibration(resolved->study);

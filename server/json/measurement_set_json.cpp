@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "server/json/csv.hpp"
+#include "server/json/labels.hpp"
 #include "server/json/place.hpp"
 #include "server/json/study.hpp"
 #include "server/json/text.hpp"
@@ -163,33 +164,8 @@ void check_letters(std::string_view text, ProblemList& problems) {
   }
 }
 
-/// Complains of a label that would not be printed as it is.
-void check_label(const Place& place) {
-  if (!place.exists() || !place.json().is_string()) return;
-  const auto& text = place.json().get_ref<const std::string&>();
-  if (!is_utf8(text)) {
-    place.complain("its letters are not UTF-8", "another encoding", "letters in UTF-8");
-  } else if (has_control_letter(text)) {
-    place.complain("control characters are no part of it",
-                   "a text with a control character",
-                   "a text on one line, without tabs");
-  }
-}
-
-/// Complains of sources among measurements that would not be printed as they are.
-void check_sources(const Json& measurements, ProblemList& problems) {
-  if (!measurements.is_array()) return;
-  for (std::size_t i = 0; i < measurements.size(); ++i) {
-    const Json& measurement = measurements[i];
-    if (!measurement.is_object() || !measurement.contains("source")) continue;
-    const std::string pointer = pointer_to(pointer_to("/measurements", i), "source");
-    check_label(Place(&measurement["source"], pointer, problems));
-  }
-}
-
 std::string read_material(const Place& place) {
   if (!place.exists()) return {};
-  check_label(place);
   auto text = place.text(longest_name);
   if (text && text->empty()) place.complain("a material has a name", "\"\"", "1 to 100 bytes");
   return std::move(text).value_or("");
@@ -201,7 +177,7 @@ void check_measurements(const Json& measurements, ProblemList& problems) {
   if (measurements.is_array() && measurements.empty()) {
     place.complain("a set holds measurements", "none", "one or more");
   }
-  check_sources(measurements, problems);
+  check_sources(measurements, "/measurements", problems);
   Study study;
   read_measurements(place, study);
 }
@@ -220,8 +196,9 @@ engine::Result<MeasurementSet, Problems> parse_measurement_set(std::string_view 
   const auto json = parse_text(text, {}, problems);
   if (!json) return engine::Unexpected{problems.all()};
   Members members(Place(&*json, "", problems));
-  const std::string material =
-      read_material(members.required("material", "the name of what was measured"));
+  const Place material_place = members.required("material", "the name of what was measured");
+  check_label(material_place);
+  const std::string material = read_material(material_place);
   const Place measurements = members.required("measurements", "a list of measurements");
   members.no_others();
   if (measurements.exists()) check_measurements(measurements.json(), problems);
@@ -233,7 +210,9 @@ engine::Result<MeasurementSet, Problems> parse_measurement_table(std::string_vie
                                                                  const std::string& material) {
   ProblemList problems;
   const Json named = material;
-  read_material(Place(&named, "?material", problems));
+  const Place place(&named, "?material", problems);
+  check_label(place);
+  read_material(place);
   check_letters(text, problems);
   if (!problems.empty()) return engine::Unexpected{problems.all()};
   const std::vector<CsvRow> rows = read_csv(text);
@@ -286,9 +265,6 @@ engine::Result<Submission, Problems> parse_submission(std::string_view text) {
   auto json = parse_text(text, {}, problems);
   // What is wrong with it says the reader of studies, who looks at all of it.
   if (!json || !json->is_object()) return submission;
-  if (json->contains("name")) check_label(Place(&(*json)["name"], "/name", problems));
-  if (json->contains("measurements")) check_sources((*json)["measurements"], problems);
-  if (!problems.empty()) return engine::Unexpected{problems.all()};
   if (!json->contains("material") && !json->contains("measurement_set")) return submission;
   if (json->contains("material")) {
     submission.material = read_material(Place(&(*json)["material"], "/material", problems));

@@ -1,5 +1,6 @@
 #include "server/json/own_material_json.hpp"
 
+#include "server/json/labels.hpp"
 #include "server/json/material_library.hpp"
 #include "server/json/place.hpp"
 #include "server/json/study.hpp"
@@ -17,6 +18,7 @@ engine::Result<std::string, Problems> parse_own_material(std::string_view text) 
   const Place grain = members.required("grain", "properties, as under materials in a study");
   members.no_others();
   std::string title;
+  check_label(title_place);
   if (title_place.exists()) title = title_place.text(longest_title).value_or("");
   if (grain.exists()) {
     // Checked where studies are: under the name that it has there.

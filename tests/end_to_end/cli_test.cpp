@@ -156,6 +156,9 @@ TEST_CASE("a file or address that cannot be used is exit code 2 and says why", "
   const Ran proxied = run("serve --port 0 --name dem.example --db " + database, "&1");
   CHECK(proxied.exit_code == 2);
   CHECK_THAT(proxied.output, Contains("dem.example can be reached by others"));
+  const Ran control = run("token create \"$(printf 'a\\033[2J')\" --db " + database, "&1");
+  CHECK(control.exit_code == 2);
+  CHECK_THAT(control.output, Contains("control characters"));
   REQUIRE(run("token create any --scope submit --db " + database).exit_code == 0);
   const Ran address = run(serve, "&1");
   CHECK(address.exit_code == 2);

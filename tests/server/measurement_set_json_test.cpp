@@ -6,6 +6,8 @@
 #include <catch2/catch.hpp>
 
 #include "server/json/csv.hpp"
+#include "server/json/labels.hpp"
+#include "server/json/own_material_json.hpp"
 
 namespace {
 
@@ -70,13 +72,31 @@ TEST_CASE("a table's material and sources are as a document's", "[server]") {
 }
 
 TEST_CASE("what a submission is called has no control characters", "[server]") {
-  using repose::server::parse_submission;
-  CHECK(parse_submission(R"({"name":"lab box","material":"soja \u00e4"})"));
-  const auto submission = parse_submission(
-      R"({"name":"lab\nbox","measurements":[{"source":"\u0000"},{"source":"\u009b2J"}]})");
-  REQUIRE_FALSE(submission);
-  std::vector<std::string> where;
-  for (const auto& problem : submission.error()) where.push_back(problem.pointer);
-  CHECK(where ==
-        std::vector<std::string>{"/name", "/measurements/0/source", "/measurements/1/source"});
+  using repose::server::Problems;
+  const auto places_of = [](const Problems& problems) {
+    std::vector<std::string> where;
+    for (const auto& problem : problems) where.push_back(problem.pointer);
+    return where;
+  };
+  using repose::server::problems_of_labels;
+  using repose::server::problems_of_schedule_labels;
+  CHECK(problems_of_labels(R"({"name":"lab box","material":"soja \u00e4"})").empty());
+  const std::string study =
+      R"({"name":"lab\nbox","material":"\r","measurements":[{"source":"\u0000"},)"
+      R"({"source":"\u009b2J"}]})";
+  CHECK(places_of(problems_of_labels(study)) ==
+        std::vector<std::string>{
+            "/name", "/material", "/measurements/0/source", "/measurements/1/source"});
+  CHECK(places_of(problems_of_schedule_labels(R"({"name":"\u001b","study":)" + study + "}")) ==
+        std::vector<std::string>{"/name",
+                                 "/study/name",
+                                 "/study/material",
+                                 "/study/measurements/0/source",
+                                 "/study/measurements/1/source"});
+  const auto material = repose::server::parse_own_material(
+      R"({"title":"a\u0007","grain":{"density":{"value":1200,"unit":"kg/m3"}}})");
+  REQUIRE_FALSE(material);
+  CHECK(places_of(material.error())[0] == "/title");
+  // What is stored from before is read as ever.
+  CHECK(repose::server::parse_submission(study));
 }

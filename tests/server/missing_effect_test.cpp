@@ -211,3 +211,26 @@ TEST_CASE("an extension is of what it extends: its material, and its set while i
   CHECK(other["material"] == "ball");
   CHECK(other["measurement_set"].is_null());
 }
+
+TEST_CASE("a study that is stored with control characters is extended without them", "[server]") {
+  const TemporaryFolder folder;
+  json study = json::parse(hidden_drop_study(0.0));
+  std::string fit;
+  {
+    Service service(in(folder));
+    fit = read(service.calibrate(study.dump(), {}, {}))["fit"].dump();
+  }
+  std::int64_t id = 0;
+  {
+    db::Store store(folder / "a.db", db::Access::write);
+    study["name"] = "lab\nbox";
+    study["measurements"][0]["source"] = "by\u009bhand";
+    id = store.add_calibration("lab\nbox", study.dump(), "d", 1);
+    REQUIRE(store.start(id, 2));
+    REQUIRE(store.finish(id, "done", fit, 0.5, std::nullopt, 3));
+  }
+  Service service(in(folder));
+  const json child = read(service.extend(id, R"({"effect":"velocity_restitution"})"));
+  CHECK(child["name"] == "lab box + velocity_restitution");
+  CHECK(child["study"]["measurements"][0]["source"] == "by hand");
+}

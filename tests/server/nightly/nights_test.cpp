@@ -375,6 +375,28 @@ TEST_CASE("a night whose model is no longer adequate ends with its diagnosis", "
   CHECK(cut.answers() < whole.answers());
 }
 
+TEST_CASE("control characters are refused in what is sent, and stop no night of what is stored",
+          "[server]") {
+  Plant plant;
+  plant.add(0.6);
+  Json document = schedule_of(drop_study(0.6));
+  document["name"] = document["study"]["name"] = "lab\nbox";
+  document["study"]["material"] = "glass\x1b[2J";
+  const auto refused = plant.service().add_schedule(to_text(document));
+  REQUIRE_FALSE(refused);
+  std::set<std::string> places;
+  for (const Problem& problem : refused.error().problems) places.insert(problem.pointer);
+  CHECK(places == std::set<std::string>{"/name", "/study/name", "/study/material"});
+  CHECK_FALSE(plant.service().replace_schedule(1, to_text(document)));
+  CHECK_FALSE(plant.service().submit(to_text(document["study"])));
+  plant.meddle([&](db::Store& store) {
+    db::ScheduleStore(store).replace(1, "lab\nbox", to_text(document), 1);
+  });
+  plant.now += 24h;
+  plant.run();
+  CHECK(plant.last()["outcome"] == "first");
+}
+
 TEST_CASE("two schedules of one study and one time have nights of their own", "[server]") {
   Plant plant;
   plant.add(0.6);
