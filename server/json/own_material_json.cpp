@@ -56,13 +56,15 @@ std::string print_all_materials(const std::vector<db::MaterialRecord>& own) {
   return to_text(list);
 }
 
+bool has_grain(std::string_view study) {
+  const Json json = Json::parse(study);
+  return json.contains("materials") &&
+         (!json["materials"].is_object() || json["materials"].contains("grain"));
+}
+
 std::string with_grain(std::string_view study, std::string_view material) {
+  if (has_grain(study)) return std::string(study);
   Json json = Json::parse(study);
-  if (!json.contains("materials")) json["materials"] = Json::object();
-  // What is no object is left for the reader of studies to complain of.
-  if (!json["materials"].is_object() || json["materials"].contains("grain")) {
-    return std::string(study);
-  }
   json["materials"]["grain"] = Json::parse(material)["grain"];
   return to_text(json);
 }

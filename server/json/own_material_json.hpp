@@ -21,6 +21,9 @@ std::string print_own_material(const db::MaterialRecord& material);
 /// "origin"}]}.
 std::string print_all_materials(const std::vector<db::MaterialRecord>& own);
 
+/// Whether a study's materials have a grain, or are what its reader will complain of.
+bool has_grain(std::string_view study);
+
 /// The study with that grain, where it has none of its own.
 std::string with_grain(std::string_view study, std::string_view material);
 

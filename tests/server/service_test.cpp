@@ -125,6 +125,33 @@ TEST_CASE("a study with mistakes is refused with all of them", "[server]") {
   CHECK(parse_items(service.calibrations(10, std::nullopt).document).empty());
 }
 
+TEST_CASE("a study whose grain is of a name that is not kept is told so before all else",
+          "[server]") {
+  const TemporaryFolder folder;
+  Service service(in(folder));
+  Json study = Json::parse(drop_study());
+  const Json content{{"title", "ours"}, {"grain", study["materials"]["grain"]}};
+  REQUIRE(service.put_material("our-beads", to_text(content), false));
+  const auto refusal = [&](const char* material) {
+    study["material"] = material;
+    const auto refused = service.submit(to_text(study));
+    REQUIRE_FALSE(refused);
+    REQUIRE(refused.error().problems.size() > 1);
+    CHECK(refused.error().problems[1].pointer == "/materials/grain/density");
+    const Problem first = refused.error().problems[0];
+    CHECK(first.pointer == "/material");
+    return first.message + "; " + first.allowed;
+  };
+  study["materials"].erase("grain");
+  CHECK_THAT(refusal("our-bead"),
+             Catch::Contains("did you mean \"our-beads\"?") && Catch::Contains("is kept"));
+  CHECK_THAT(refusal("soybeen"), Catch::Contains("did you mean \"soybean\"?"));
+  CHECK_THAT(refusal("soybean"),
+             Catch::Contains("published") && Catch::Contains("/v1/materials/soybean"));
+  study["material"] = "our-beads";
+  CHECK(service.submit(to_text(study)));
+}
+
 TEST_CASE("a waiting calibration is cancelled at once, a finished one not at all", "[server]") {
   const TemporaryFolder folder;
   Service service(in(folder));
