@@ -139,6 +139,31 @@ Json read_rows(const std::vector<CsvRow>& rows, ProblemList& problems) {
   return measurements;
 }
 
+/// The rows of a table without the empty cells at their ends, which spreadsheets leave; what is left
+/// without any cell is no row.
+std::vector<CsvRow> filled_rows(std::string_view text) {
+  std::vector<CsvRow> rows = read_csv(text);
+  for (CsvRow& row : rows) {
+    while (!row.cells.empty() && trimmed(row.cells.back()).empty()) row.cells.pop_back();
+  }
+  std::erase_if(rows, [](const CsvRow& row) { return row.cells.empty(); });
+  return rows;
+}
+
+/// Complains of a table whose cells something other than commas separates: no column's name has it.
+void check_separator(const CsvRow& head, ProblemList& problems) {
+  constexpr std::array<std::pair<char, std::string_view>, 2> others{
+      {{';', "semicolons"}, {'\t', "tabs"}}};
+  for (const auto& [separator, name] : others) {
+    if (head.cells.size() > 1 || head.cells[0].find(separator) == std::string::npos) continue;
+    problems.add({line_of(head),
+                  "the cells are separated by " + std::string(name),
+                  std::string(name),
+                  "commas between cells, and a point in numbers: 0.6"});
+    return;
+  }
+}
+
 /// "/measurements/2/value" -> "line 4: value": where a person finds it in the table.
 std::string place_in_table(const std::string& pointer, const std::vector<CsvRow>& rows) {
   constexpr std::string_view begin = "/measurements/";
@@ -215,11 +240,13 @@ engine::Result<MeasurementSet, Problems> parse_measurement_table(std::string_vie
   read_material(place);
   check_letters(text, problems);
   if (!problems.empty()) return engine::Unexpected{problems.all()};
-  const std::vector<CsvRow> rows = read_csv(text);
+  const std::vector<CsvRow> rows = filled_rows(text);
   if (rows.empty()) {
     problems.add({"line 1", "the table is empty", "", "a head: " + listed(column_names())});
     return engine::Unexpected{problems.all()};
   }
+  check_separator(rows.front(), problems);
+  if (!problems.empty()) return engine::Unexpected{problems.all()};
   const Json measurements = read_rows(rows, problems);
   check_measurements(measurements, problems);
   Problems all = problems.all();

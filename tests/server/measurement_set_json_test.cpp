@@ -1,6 +1,8 @@
 #include "server/json/measurement_set_json.hpp"
 
+#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -41,6 +43,28 @@ TEST_CASE("a row begins where its first cell does, and a cell may hold lines", "
   CHECK(rows[0].line == 1);
   CHECK(rows[0].cells == std::vector<std::string>{"a", "b\nb"});
   CHECK(rows[1].line == 4);
+}
+
+TEST_CASE("a table with another separator is told which it has and which is expected", "[server]") {
+  for (const auto& [separator, name] : {std::pair{';', "semicolons"}, std::pair{'\t', "tabs"}}) {
+    std::string table = head + good;
+    std::ranges::replace(table, ',', separator);
+    const auto set = repose::server::parse_measurement_table(table, "glass");
+    REQUIRE_FALSE(set);
+    REQUIRE(set.error().size() == 1);
+    CHECK(set.error()[0].pointer == "line 1");
+    CHECK(set.error()[0].message == "the cells are separated by " + std::string(name));
+    CHECK(set.error()[0].allowed.starts_with("commas"));
+  }
+}
+
+TEST_CASE("the empty cells that spreadsheets leave are no cells", "[server]") {
+  const std::string wider = "experiment,observable,value,unit,standard_error,, \r\n";
+  CHECK(places(wider + "drop,restitution,0.6,1,0.02,,\r\n,,,,,,\r\n").empty());
+  CHECK(places(wider + ",,,,,,\r\n" + wrong) == std::vector<std::string>{"line 3: unit"});
+  CHECK(places(",,,\n") == std::vector<std::string>{"line 1"});
+  CHECK(places(wider + "drop,restitution,0.6,1,0.02,,more\n") ==
+        std::vector<std::string>{"line 2"});
 }
 
 TEST_CASE("a table says each thing once", "[server]") {
