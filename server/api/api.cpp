@@ -205,7 +205,9 @@ std::optional<Reply> Api::refuse_unread(const Request& request) {
   reading.path = request.path;
   const auto current = find_route(reading);
   if (!current) return problem_reply(400, "There is nothing to match at this address.");
-  for (const std::string_view form : {(*current)->media, (*current)->also}) {
+  std::vector<std::string_view> forms{(*current)->media};
+  forms.insert(forms.end(), (*current)->also.begin(), (*current)->also.end());
+  for (const std::string_view form : forms) {
     if (form.empty()) continue;
     reading.fields["accept"] = form;
     const Reply now = run_route(**current, service_, reading);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -55,8 +56,11 @@ struct Reply {
 struct QueryField {
   std::string_view name;
   std::string_view meaning;
-  bool whole = true;       ///< a whole number; else a text
-  std::int64_t least = 1;  ///< of a whole number
+  enum class Kind { whole, text, truth };
+  Kind kind = Kind::whole;
+  // Of a whole number:
+  std::int64_t least = 1;
+  std::int64_t most = std::numeric_limits<std::int64_t>::max();
 };
 
 using Handler = Reply (*)(Service& service, const Request& request);
@@ -73,7 +77,9 @@ struct Route {
   Handler handler;
   std::string_view media = "application/json";  ///< form of the answer
   std::optional<Scope> scope = {};              ///< else read to read, submit to change
-  std::string_view also = {};                   ///< another form that body or answer may have
+  /// Other forms that body or answer may have.
+  std::span<const std::string_view> also = {};
+  std::span<const std::string_view> names = {};  ///< that {name} may be; none: any
 };
 
 /// A media type without its parameters, in lower case.

@@ -9,48 +9,54 @@
 #include "server/api/problem.hpp"
 #include "server/api/query.hpp"
 #include "server/api/route.hpp"
+#include "server/exports/export.hpp"
 #include "server/letters.hpp"
 
 namespace repose::server {
 
 namespace {
 
+using Kind = QueryField::Kind;
+
+constexpr QueryField limit_field{
+    "limit", "of a page, how many items (50 where it is not given)", Kind::whole, 1, largest_page};
 constexpr std::array<QueryField, 2> list_fields{{
-    {"limit", "how many items, 1 to 200 (50 where it is not given)"},
+    limit_field,
     {"before", "only items older than this one: the answer's `next`"},
 }};
 constexpr std::array<QueryField, 2> evaluation_fields{{
-    {"limit", "how many items, 1 to 200 (50 where it is not given)"},
-    {"after", "only items after this one: the answer's `next`", true, 0},
+    limit_field,
+    {"after", "only items after this one: the answer's `next`", Kind::whole, 0},
 }};
 constexpr std::array<QueryField, 2> event_fields{{
     {"after",
      "only events after this one (Last-Event-ID, where it is given, before this)",
-     true,
+     Kind::whole,
      0},
-    {"limit", "of a page, how many items, 1 to 200 (50 where it is not given)"},
+    limit_field,
 }};
 constexpr std::array<QueryField, 5> fit_fields{{
-    {"material", "only of that material", false},
-    {"name", "only of the study of that name", false},
-    {"latest", "true: only the newest one", false},
-    {"limit", "how many items, 1 to 200 (50 where it is not given)"},
+    {"material", "only of that material", Kind::text},
+    {"name", "only of the study of that name", Kind::text},
+    {"latest", "true: only the newest one", Kind::truth},
+    limit_field,
     {"before", "only items older than this one: the answer's `next`"},
 }};
 constexpr std::array<QueryField, 2> set_list_fields{{
-    {"limit", "how many items, 1 to 200 (50 where it is not given)"},
-    {"after", "only names after this one: the answer's `next`", false},
+    limit_field,
+    {"after", "only names after this one: the answer's `next`", Kind::text},
 }};
 constexpr std::array<QueryField, 1> version_field{{{"version", "which; else the newest"}}};
 constexpr std::array<QueryField, 1> table_fields{
-    {{"material", "what was measured, where a table is sent", false}}};
+    {{"material", "what was measured, where a table is sent", Kind::text}}};
 constexpr std::array<QueryField, 2> best_fit_fields{{
-    {"material", "only of that material", false},
-    {"name", "only of the study of that name", false},
+    {"material", "only of that material", Kind::text},
+    {"name", "only of the study of that name", Kind::text},
 }};
 
-constexpr std::string_view json = "application/json", stream = "text/event-stream",
-                           table_form = "text/csv";
+constexpr std::string_view json = "application/json";
+constexpr std::array<std::string_view, 1> stream{"text/event-stream"}, table_form{"text/csv"};
+constexpr std::array<std::string_view, 2> export_forms{"text/csv", "text/plain"};
 
 // clang-format off
 constexpr std::array<Route, 43> table{{
@@ -63,7 +69,7 @@ constexpr std::array<Route, 43> table{{
     {"GET", "/v1/calibrations/{id}/evaluations", "listEvaluations", "List its evaluations in the order of work.",
      "", 200, "evaluation_list", evaluation_fields, handlers::list_evaluations},
     {"GET", "/v1/calibrations/{id}/exports/{name}", "exportFit", "Get the fit as json, csv, or input of liggghts, lammps, yade.",
-     "", 200, "", {}, handlers::export_fit},
+     "", 200, "", {}, handlers::export_fit, json, {}, export_forms, export_format_names},
     {"DELETE", "/v1/calibrations/{id}", "cancelCalibration", "Cancel a calibration that is not finished.",
      "", 202, "calibration_document", {}, handlers::cancel_calibration},
     {"GET", "/v1/calibrations/{id}/events", "followCalibration", "Follow a calibration: a stream of events, or a page of them.",
@@ -224,10 +230,11 @@ engine::Result<const Route*, Reply> find_route(Request& request) {
 
 Reply run_route(const Route& route, Service& service, const Request& request) {
   const std::string type = media_type(request.content_type);
-  if (!route.request.empty() && type != json && (route.also.empty() || type != route.also)) {
-    return problem_reply(415,
-                         "Send the document as Content-Type: application/json" +
-                             (route.also.empty() ? "." : " or " + std::string(route.also) + "."));
+  if (!route.request.empty() && type != json &&
+      std::ranges::find(route.also, type) == route.also.end()) {
+    std::string forms(json);
+    for (const std::string_view form : route.also) forms += " or " + std::string(form);
+    return problem_reply(415, "Send the document as Content-Type: " + forms + ".");
   }
   Problems problems = unknown_fields(request, route);
   if (!problems.empty()) return problem_reply(400, "The query has problems.", std::move(problems));

@@ -77,9 +77,11 @@ Json content(const char* type, Json schema) {
   return {{"content", {{type, {{"schema", std::move(schema)}}}}}};
 }
 
-/// A body that may also have another form, which is a text.
-void add_form(Json& body, std::string_view also) {
-  if (!also.empty()) body["content"][std::string(also)] = {{"schema", {{"type", "string"}}}};
+/// A body that may also have other forms, which are texts.
+void add_forms(Json& body, std::span<const std::string_view> also) {
+  for (const std::string_view form : also) {
+    body["content"][std::string(form)] = {{"schema", {{"type", "string"}}}};
+  }
 }
 
 bool reads(const Route& route) { return route.method == "GET"; }
@@ -100,7 +102,9 @@ constexpr std::array<HeadField, 5> head_fields{{
     {"LastEventId",
      "Last-Event-ID",
      "as ?after, and before it: what a client sends that was cut off",
-     [](const Route& route, std::span<const Route>) { return route.also == "text/event-stream"; }},
+     [](const Route& route, std::span<const Route>) {
+       return std::ranges::count(route.also, "text/event-stream") > 0;
+     }},
     {"IfMatch",
      "If-Match",
      "the ETag of what was read, in any of its forms: where that has changed nothing is done, and "
@@ -155,25 +159,32 @@ Json print_security(const Route& route) {
   return Json::array({Json{{security_scheme, Json::array({scope})}}});
 }
 
+/// What may stand in a field of the query.
+Json print_field(const QueryField& field) {
+  if (field.kind == QueryField::Kind::text) return {{"type", "string"}};
+  if (field.kind == QueryField::Kind::truth) return {{"type", "boolean"}};
+  Json schema{{"type", "integer"}, {"minimum", field.least}};
+  if (field.most < QueryField{}.most) schema["maximum"] = field.most;
+  return schema;
+}
+
 Json print_parameters(const Route& route, std::span<const Route> routes) {
-  const auto whole = [](std::int64_t least) {
-    return Json{{"type", "integer"}, {"minimum", least}};
-  };
   Json result = Json::array();
   if (route.pattern.find("{id}") != std::string_view::npos) {
-    result.push_back({{"name", "id"}, {"in", "path"}, {"required", true}, {"schema", whole(1)}});
+    result.push_back(
+        {{"name", "id"}, {"in", "path"}, {"required", true}, {"schema", print_field({})}});
   }
   if (route.pattern.find("{name}") != std::string_view::npos) {
-    result.push_back({{"name", "name"},
-                      {"in", "path"},
-                      {"required", true},
-                      {"schema", {{"type", "string"}, {"minLength", 1}}}});
+    Json schema{{"type", "string"}, {"minLength", 1}};
+    if (!route.names.empty()) schema = {{"enum", route.names}};
+    result.push_back(
+        {{"name", "name"}, {"in", "path"}, {"required", true}, {"schema", std::move(schema)}});
   }
   for (const QueryField& field : route.query) {
     result.push_back({{"name", field.name},
                       {"in", "query"},
                       {"description", field.meaning},
-                      {"schema", field.whole ? whole(field.least) : Json{{"type", "string"}}}});
+                      {"schema", print_field(field)}});
   }
   for (const HeadField& field : head_fields) {
     if (field.is_for(route, routes)) result.push_back(parameter_reference(field.component));
@@ -189,14 +200,14 @@ Json print_operation(const Route& route, std::span<const Route> routes) {
   if (!route.request.empty()) {
     operation["requestBody"] = content("application/json", reference(route.request));
     operation["requestBody"]["required"] = true;
-    add_form(operation["requestBody"], route.also);
+    add_forms(operation["requestBody"], route.also);
   }
   const bool is_json = route.media == "application/json";
   Json success = content(std::string(route.media).c_str(),
                          !is_json                 ? Json{{"type", "string"}}
                          : route.response.empty() ? Json{{"type", "object"}}
                                                   : reference(route.response));
-  add_form(success, route.also);
+  add_forms(success, route.also);
   success["description"] = "The answer.";
   if (route.success == 202) success["description"] = "Taken on; the answer says how it stands.";
   if (reads(route)) {

@@ -102,6 +102,27 @@ TEST_CASE("every route says which token it needs", "[server]") {
   CHECK(operation("get", "/livez")["security"] == Json::array());
 }
 
+TEST_CASE("a route says what its fields may be, and every form of its answer", "[server]") {
+  const auto schema_of = [](const std::string& path, const std::string& name) {
+    for (const Json& parameter : operation("get", path)["parameters"]) {
+      if (parameter.value("name", "") == name) return parameter["schema"];
+    }
+    return Json();
+  };
+  CHECK(schema_of("/v1/fits", "limit") ==
+        Json{{"type", "integer"}, {"minimum", 1}, {"maximum", 200}});
+  CHECK(schema_of("/v1/fits", "before") == Json{{"type", "integer"}, {"minimum", 1}});
+  CHECK(schema_of("/v1/fits", "latest") == Json{{"type", "boolean"}});
+  const std::string exports = "/v1/calibrations/{id}/exports/{name}";
+  CHECK(schema_of(exports, "name") ==
+        Json{{"enum", {"json", "csv", "liggghts", "lammps", "yade"}}});
+  std::set<std::string> forms;
+  for (const auto& [form, _] : operation("get", exports)["responses"]["200"]["content"].items()) {
+    forms.insert(form);
+  }
+  CHECK(forms == std::set<std::string>{"application/json", "text/csv", "text/plain"});
+}
+
 TEST_CASE("every route says which fields of the head it reads", "[server]") {
   using Names = std::set<std::string>;
   CHECK(head_fields("get", "/v1/calibrations") == Names{"If-None-Match", "X-Request-Id"});
