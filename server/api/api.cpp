@@ -31,12 +31,8 @@ bool is_plain(std::string_view text) {
 
 /// The client's, where it is one that can be repeated; else a new one.
 std::string request_id(const Request& request) {
-  if (std::string given = request.field("x-request-id"); is_plain(given)) return given;
-  static thread_local std::mt19937_64 random{std::random_device{}()};
-  static constexpr std::string_view digits = "0123456789abcdef";
-  std::string id;
-  for (int i = 0; i < 16; ++i) id += digits[random() % digits.size()];
-  return id;
+  std::string given = request.field("x-request-id");
+  return is_plain(given) ? given : new_request_id();
 }
 
 bool reads(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
@@ -75,6 +71,14 @@ void link(const Route& route, const Request& request, Reply& reply) {
 }
 
 }  // namespace
+
+std::string new_request_id() {
+  static thread_local std::mt19937_64 random{std::random_device{}()};
+  static constexpr std::string_view digits = "0123456789abcdef";
+  std::string id;
+  for (int i = 0; i < 16; ++i) id += digits[random() % digits.size()];
+  return id;
+}
 
 Reply Api::respond(Request request) {
   const auto begin = std::chrono::steady_clock::now();

@@ -5,12 +5,16 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "server/access/tokens.hpp"
 #include "server/api/metrics.hpp"
 #include "server/api/route.hpp"
 
 namespace repose::server {
+
+/// A name for a request whose client gives it none that can be repeated.
+std::string new_request_id();
 
 class Api {
  public:

@@ -132,7 +132,9 @@ struct HttpServer::State {
     const httplib::Server::HandlerWithResponse explain = [](const httplib::Request&,
                                                             httplib::Response& response) {
       if (!response.body.empty()) return Handled::Unhandled;
-      send(problem_reply(response.status, "The request was refused before it was read."), response);
+      Reply reply = problem_reply(response.status, "The request was refused before it was read.");
+      reply.headers.emplace_back("X-Request-Id", new_request_id());
+      send(reply, response);
       return Handled::Handled;
     };
     http.set_error_handler(explain);
@@ -185,6 +187,7 @@ HttpServer::HttpServer(Responder responder, const HttpOptions& options)
       },
       [](int status, const std::string& detail) {
         Reply reply = problem_reply(status, detail);
+        reply.headers.emplace_back("X-Request-Id", new_request_id());
         if (status == 503) reply.headers.emplace_back("Retry-After", "1");
         return print_last_reply(reply);
       });

@@ -180,7 +180,8 @@ Json print_field(double value, const FieldInfo& field) {
 }
 
 Json in_unit(double value, const Unit& unit) {
-  return number_or_null(exactly_in(value, unit).value_or(value / unit.factor));
+  // Less than nothing is nothing: of two zeros the neighbours above begin with the negative one.
+  return number_or_null(exactly_in(value, unit).value_or(value / unit.factor) + 0.0);
 }
 
 }  // namespace repose::server

@@ -67,8 +67,8 @@ Json print_directions(const Calibration& calibration, const std::vector<Directio
     Json components = Json::array();
     for (std::size_t k = 0; k < direction.components.size(); ++k) {
       Json component = print_key(calibration.free.at(k).key);
-      component["weight"] = number_or_null(direction.components[k]);
-      if (!direction.powers.empty()) component["power"] = number_or_null(direction.powers[k]);
+      component["weight"] = number_or_null(direction.components[k] + 0.0);
+      if (!direction.powers.empty()) component["power"] = number_or_null(direction.powers[k] + 0.0);
       components.push_back(std::move(component));
     }
     result.push_back({{"components", std::move(components)},

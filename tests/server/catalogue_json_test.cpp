@@ -31,6 +31,10 @@ TEST_CASE("the catalogue's document holds every effect with bounds that contain 
   }
 }
 
+TEST_CASE("no number of the catalogue is less than nothing and nothing", "[server]") {
+  CHECK(repose::server::to_text(catalogue()).find("-0.0,") == std::string::npos);
+}
+
 TEST_CASE("every setting has a default at every fidelity, in the unit shown", "[server]") {
   REQUIRE(catalogue()["experiments"].size() == engine::experiment_catalogue().size());
   for (const Json& experiment : catalogue()["experiments"]) {

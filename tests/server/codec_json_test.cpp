@@ -10,6 +10,7 @@ namespace {
 
 using repose::server::exact_unit;
 using repose::server::exactly_in;
+using repose::server::in_unit;
 using repose::server::Json;
 using repose::server::Place;
 using repose::server::print_field;
@@ -113,6 +114,14 @@ TEST_CASE("every double is printed so that it reads back exactly", "[server]") {
       CHECK(json["value"].get<double>() * printed_in.factor == value);
     }
   }
+}
+
+TEST_CASE("nothing has no sign", "[server]") {
+  for (const char* symbol : {"mm", "%", "deg", "1"}) {
+    CHECK(in_unit(0.0, *engine::unit::find(symbol)).dump() == "0.0");
+    CHECK(in_unit(-0.0, *engine::unit::find(symbol)).dump() == "0.0");
+  }
+  CHECK(in_unit(-0.002, *engine::unit::find("mm")).dump() == "-2.0");
 }
 
 TEST_CASE("a number that is none is null", "[server]") {

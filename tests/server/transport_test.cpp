@@ -137,7 +137,11 @@ TEST_CASE("a body that does not come is given up", "[server]") {
   const auto slow = wires(
       server.port(), 20, "POST /x HTTP/1.1\r\nHost: localhost\r\nContent-Length: 100\r\n\r\nabc");
   CHECK(server.is_alive());
-  for (const Wire& wire : slow) CHECK(has(wire.rest(), "HTTP/1.1 408"));
+  for (const Wire& wire : slow) {
+    const std::string refusal = wire.rest();
+    CHECK(has(refusal, "HTTP/1.1 408"));
+    CHECK(has(refusal, "X-Request-Id: "));
+  }
 }
 
 TEST_CASE("a thousand connections on which nothing comes keep nobody out", "[server]") {
