@@ -183,7 +183,7 @@ Answer<std::string> Service::cancel(std::int64_t id) {
   };
   if (record->finished_at) return final();
   const auto where = state_->cancel({Job::Kind::calibration, id});
-  if (where == Schedule::Cancelled::running) return calibration(id);
+  if (where == JobQueue::Cancelled::running) return calibration(id);
   if (!state_->store.finish(id, "cancelled", {}, {}, {}, microseconds_now())) return final();
   return calibration(id);
 }
@@ -221,7 +221,7 @@ Answer<std::string> Service::cancel_diagnosis(std::int64_t id) {
   };
   if (record->finished_at) return ended(record->state);
   const auto where = state_->cancel({Job::Kind::diagnosis, id});
-  if (where != Schedule::Cancelled::running &&
+  if (where != JobQueue::Cancelled::running &&
       !state_->store.finish_diagnosis(id, "cancelled", {}, {}, microseconds_now())) {
     return ended(state_->store.diagnosis(id)->state);
   }

@@ -130,14 +130,14 @@ void Service::State::strand(const Job& job) {
   stranded.insert(job);
 }
 
-Schedule::Cancelled Service::State::cancel(const Job& job) {
+JobQueue::Cancelled Service::State::cancel(const Job& job) {
   {
     // Before the job is asked to stop, so that it knows why.
     const std::scoped_lock hold(mutex);
     cancelled.insert(job);
   }
-  const auto where = scheduler ? scheduler->cancel(job) : Schedule::Cancelled::unknown;
-  if (where != Schedule::Cancelled::running) take_cancel(job);
+  const auto where = scheduler ? scheduler->cancel(job) : JobQueue::Cancelled::unknown;
+  if (where != JobQueue::Cancelled::running) take_cancel(job);
   return where;
 }
 

@@ -54,7 +54,7 @@ struct Service::State {
   void end_nights(const std::stop_token& stop);
   void take_up_stranded();
   /// Takes a job that a user cancels from the queue, or asks it to stop where it runs.
-  Schedule::Cancelled cancel(const Job& job);
+  JobQueue::Cancelled cancel(const Job& job);
   bool take_cancel(const Job& job);
   void strand(const Job& job);
   /// With what is known of each beside its row.

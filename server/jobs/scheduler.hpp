@@ -1,4 +1,4 @@
-/// Scheduler: the thread that obeys a Schedule, one job at a time.
+/// Scheduler: the thread that obeys a JobQueue, one job at a time.
 #pragma once
 
 #include <condition_variable>
@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <thread>
 
-#include "server/jobs/schedule.hpp"
+#include "server/jobs/job_queue.hpp"
 
 namespace repose::server {
 
@@ -22,8 +22,8 @@ class Scheduler {
   Scheduler(const Scheduler&) = delete;
   Scheduler& operator=(const Scheduler&) = delete;
 
-  bool submit(Job job);  ///< as Schedule's
-  Schedule::Cancelled cancel(Job job);
+  bool submit(Job job);  ///< as JobQueue's
+  JobQueue::Cancelled cancel(Job job);
 
  private:
   void obey(const std::stop_token& stop);
@@ -31,7 +31,7 @@ class Scheduler {
   Runner run_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  Schedule schedule_;
+  JobQueue queue_;
   std::stop_source running_;
   std::jthread thread_;  // last: it uses all of the above
 };

@@ -1,25 +1,25 @@
-#include "server/jobs/schedule.hpp"
+#include "server/jobs/job_queue.hpp"
 
 #include <algorithm>
 
 namespace repose::server {
 
-bool Schedule::submit(Job job) {
+bool JobQueue::submit(Job job) {
   if (running_ == job || std::ranges::find(waiting_, job) != waiting_.end()) return false;
   waiting_.push_back(job);
   return true;
 }
 
-std::optional<Job> Schedule::next() {
+std::optional<Job> JobQueue::next() {
   if (!ready()) return std::nullopt;
   running_ = waiting_.front();
   waiting_.pop_front();
   return running_;
 }
 
-void Schedule::finished() { running_.reset(); }
+void JobQueue::finished() { running_.reset(); }
 
-Schedule::Cancelled Schedule::cancel(Job job) {
+JobQueue::Cancelled JobQueue::cancel(Job job) {
   if (running_ == job) return Cancelled::running;
   const auto found = std::ranges::find(waiting_, job);
   if (found == waiting_.end()) return Cancelled::unknown;

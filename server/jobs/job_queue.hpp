@@ -1,4 +1,4 @@
-/// Schedule: which jobs wait, and which runs. A value: no threads, no clock, no store.
+/// JobQueue: which jobs wait, and which runs. A value: no threads, no clock, no store.
 #pragma once
 
 #include <compare>
@@ -17,7 +17,7 @@ struct Job {
   auto operator<=>(const Job&) const = default;
 };
 
-class Schedule {
+class JobQueue {
  public:
   /// Puts a job at the end of the queue; false where it waits or runs already: it stays there.
   bool submit(Job job);
