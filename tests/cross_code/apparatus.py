@@ -59,9 +59,10 @@ class Apparatus:
 
 
 class Drop(Apparatus):
-    """One grain onto a wall."""
+    """One grain onto a wall, the impact in some 300 steps: in twenty the rebound is 2 % off."""
 
     read_frames = None
+    step = STEP / 16  # s
 
     def grains(self):
         high = self.s["height"] + RADIUS
@@ -78,8 +79,11 @@ class Drop(Apparatus):
         law = {"liggghts": f"{GRAN} primitive type 2 zplane 0.0",
                "lammps": "${wall} zplane 0.0 NULL"}[code]
         there_and_back = 2 * math.sqrt(2 * self.s["height"] / G)  # s
-        return (f"fix floor all wall/gran {law}\n{self.dump(every=steps(5e-4))}"
-                f"run {steps(there_and_back)}")
+        return (f"fix floor all wall/gran {law}\n{self.dump(every=round(5e-4 / self.step))}"
+                f"run {round(there_and_back / self.step)}")
+
+    def variables(self, code):
+        return {**super().variables(code), "dt": repr(self.step)}
 
     def read(self, frames, _text):
         return reading.drop([grains[1][2] - RADIUS for _, grains in frames], self.s)
