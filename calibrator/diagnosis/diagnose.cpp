@@ -29,6 +29,9 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 constexpr int probe_replicates = 2;
+/// Where all probes are compared: the scatter there is in every score, and a best set in a corner
+/// of the bounds has few of the calibration's runs around it.
+constexpr int base_replicates = 8;
 constexpr double probe_strength =
     0.8;  // large steps beat replicates: the trace is read above noise
 constexpr int most_runs = 180, most_runs_with_pairs = 350;  // before what to measure next is asked
@@ -152,7 +155,7 @@ bool Inquiry::probe(Diagnosis& diagnosis) {
   for (std::size_t k = 0; k < question_.suspects.size(); ++k) {
     if (question_.suspects[k].objection.empty()) suspects.push_back(k);
   }
-  Points base(probe_replicates, {unit_point(probed_, dimensions_), {}});
+  Points base(base_replicates, {unit_point(probed_, dimensions_), {}});
   if (!ask("probe", base)) return false;
   const std::uint64_t shared = runs_.all().back().seed;
   for (const double strength : {probe_strength, probe_strength / 2.0, probe_strength / 4.0}) {
