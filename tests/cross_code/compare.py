@@ -40,12 +40,18 @@ def rolling_words(law, coefficient):
 SPRING_WORDS = rolling_words(LAWS["lammps"], 0.05)
 
 
+def catalogue(repose):
+    """The experiments by name, and what a unit is in SI."""
+    text = subprocess.run([repose, "catalogue", "--json"], check=True, capture_output=True).stdout
+    told = json.loads(text)
+    return ({experiment["name"]: experiment for experiment in told["experiments"]},
+            {unit["symbol"]: unit["si_factor"] for unit in told["units"]})
+
+
 def settings(repose, scene, fidelity):
     """Of the experiment, SI."""
-    text = subprocess.run([repose, "catalogue", "--json"], check=True, capture_output=True).stdout
-    catalogue = json.loads(text)
-    factors = {unit["symbol"]: unit["si_factor"] for unit in catalogue["units"]}
-    told = next(e for e in catalogue["experiments"] if e["name"] == scene)
+    experiments, factors = catalogue(repose)
+    told = experiments[scene]
     return {field["name"]: field["default"][fidelity] * factors[field["unit"]]
             for field in told["settings"] if not isinstance(field["default"][fidelity], str)}
 

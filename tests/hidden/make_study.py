@@ -62,21 +62,15 @@ class Laboratory:
         return found
 
 
-def stated(field, value):
-    """A setting with its unit, of its value in SI."""
-    return {"value": round(value / field["factor"], 9), "unit": field["unit"]}
-
-
 def measure(laboratory, reading, info, factors, noise):
-    fields = {f["name"]: {**f, "factor": factors.get(f.get("unit"), 1.0)} for f in info["settings"]}
     own = {name: q["value"] * factors[q["unit"]] for name, q in reading["settings"].items()}
     fills = [answer[reading["observable"]]
              for answer in laboratory.fills(reading["experiment"], own, reading["fills"])]
     mean = statistics.mean(fills)
     scatter = statistics.stdev(fills) / math.sqrt(len(fills)) if len(fills) > 1 else 0.0
     settings = dict(reading["settings"])
-    for name, field in fields.items():  # the draft's apparatus, said
-        default = field["default"]
+    for field in info["settings"]:  # the draft's apparatus, said
+        name, default = field["name"], field["default"]
         if name not in settings and default["draft"] != default["standard"]:
             settings[name] = {"value": default["draft"], "unit": field["unit"]}
     unit = next(o["unit"] for o in info["observables"] if o["name"] == reading["observable"])
@@ -101,11 +95,7 @@ def main():
     keep = asked.keep or ROOT / "build/hidden" / asked.sealed.stem
     keep.mkdir(parents=True, exist_ok=True)
     laboratory = Laboratory(sealed, asked.repose, keep)
-    text = compare.subprocess.run([asked.repose, "catalogue", "--json"], check=True,
-                                  capture_output=True).stdout
-    catalogue = json.loads(text)
-    experiments = {e["name"]: e for e in catalogue["experiments"]}
-    factors = {unit["symbol"]: unit["si_factor"] for unit in catalogue["units"]}
+    experiments, factors = compare.catalogue(asked.repose)
     noise = random.Random(sealed["noise_seed"])
     study = dict(sealed["study"])
     study["measurements"] = [measure(laboratory, {"settings": {}, **reading},
