@@ -1,7 +1,7 @@
 /// diagnose(): what does a calibrated model lack?
 ///
 ///   1. the calibration's runs, and some around the best set, make an emulator of the model
-///   2. probes: every suspect at 0.8 of its strong value, twice
+///   2. probes: every suspect at 0.8 of its strong value, twice, beside eight runs without any
 ///   3. screen: scores of suspects, and of excuses (an apparatus is off, or off along a condition),
 ///      with their joint null; nothing beyond the 5 % of chance: the model is adequate
 ///   4. else the three best suspects are refitted with all parameters, in designs that shrink

@@ -1,7 +1,8 @@
 /// Nights: what a schedule does at its times. A night takes the schedule's study as it is now;
-/// where nothing of it has changed, it is over (unchanged). Else it holds the promoted fit against it, searches
+/// where nothing of it has changed, it is over. Else it holds the promoted fit against it, searches
 /// on where that fails, and publishes what came of it:
 ///
+///   unchanged                  nothing of the study has changed since the night before
 ///   first                      there was no fit before
 ///   kept                       the promoted fit still holds
 ///   moved                      another fits better: promoted by the rule (promotion.hpp), or a
