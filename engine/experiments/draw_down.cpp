@@ -222,9 +222,8 @@ Reading slope(const DrawDown::Settings& s, Session& session, double side) {
       std::ranges::find_if(surface, [&](const SurfaceHeight& p) { return p.height > s.depth - d; });
   surface.erase(level, surface.end());
   const SurfaceProfile covered = covered_places(surface);
-  const bool runs_to_the_end = surface.size() == places;
-  if (covered.size() < fewest && runs_to_the_end) return 0.0;
   if (covered.size() < fewest) {
+    if (surface.size() == places) return 0.0;  // it ran empty to the end
     return Unexpected{"no slope stands beside the slot: of " + std::to_string(surface.size()) +
                       " places below the level surface " + std::to_string(covered.size()) +
                       " are covered with grains"};

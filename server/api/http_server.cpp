@@ -41,6 +41,13 @@ void set_socket_options(socket_t socket) {
   setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
 }
 
+/// Of a request that did not come as far as the API, which gives the others their identity.
+Reply unread_refusal(int status, const std::string& detail) {
+  Reply reply = problem_reply(status, detail);
+  reply.headers.emplace_back("X-Request-Id", new_request_id());
+  return reply;
+}
+
 /// Says what happened to the log, and nothing of it to the client.
 void log_exception(const httplib::Request& request, const std::exception_ptr& thrown) {
   std::string what = "an unknown exception";
@@ -132,9 +139,8 @@ struct HttpServer::State {
     const httplib::Server::HandlerWithResponse explain = [](const httplib::Request&,
                                                             httplib::Response& response) {
       if (!response.body.empty()) return Handled::Unhandled;
-      Reply reply = problem_reply(response.status, "The request was refused before it was read.");
-      reply.headers.emplace_back("X-Request-Id", new_request_id());
-      send(reply, response);
+      send(unread_refusal(response.status, "The request was refused before it was read."),
+           response);
       return Handled::Handled;
     };
     http.set_error_handler(explain);
@@ -186,8 +192,7 @@ HttpServer::HttpServer(Responder responder, const HttpOptions& options)
         return state.http.answer(request, keeps_alive);
       },
       [](int status, const std::string& detail) {
-        Reply reply = problem_reply(status, detail);
-        reply.headers.emplace_back("X-Request-Id", new_request_id());
+        Reply reply = unread_refusal(status, detail);
         if (status == 503) reply.headers.emplace_back("Retry-After", "1");
         return print_last_reply(reply);
       });
