@@ -336,6 +336,7 @@ std::optional<Diagnosis> Inquiry::run() {
   diagnosis.predicted = predictions_of(question_, *base_);
   diagnosis.fitted_z = rms_z(question_, diagnosis.predicted, Role::fit);
   diagnosis.held_out_z = rms_z(question_, diagnosis.predicted, Role::held_out);
+  diagnosis.p_held_out = models_->held_out_p(*base_);
   screen(diagnosis);
   fit_excuses(diagnosis);
   if (!adequate(diagnosis)) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <Eigen/Cholesky>
 
@@ -19,13 +20,17 @@ constexpr double prior_deviation = 0.6;     // of a free parameter, about the mi
 constexpr double strength_deviation = 1.5;  // of a strength, about zero
 constexpr double threshold = 3.84;          // 95 % of chi-squared with one degree of freedom
 
+/// What data and prior know of the parameters: the inverse of their covariance.
+Matrix curvature_of(const Model& model) {
+  Matrix curvature = model.fit.jacobian.transpose() * model.fit.jacobian;
+  curvature.diagonal() += model.space.precision.cwiseAbs2();
+  return curvature;
+}
+
 }  // namespace
 
 std::vector<Vector> draws_of(const Model& model, int count, engine::Random& random) {
-  const Matrix& jacobian = model.fit.jacobian;
-  Matrix curvature = jacobian.transpose() * jacobian;
-  curvature.diagonal() += model.space.precision.cwiseAbs2();
-  const Eigen::LLT<Matrix> root(curvature);
+  const Eigen::LLT<Matrix> root(curvature_of(model));
   std::vector<Vector> result{model.fit.at};
   for (int n = 1; n < count; ++n) {
     Vector z(model.fit.at.size());
@@ -92,6 +97,30 @@ ModelSpace Models::space(const Additions& on) const {
 double Models::misfit_p(const ModelFit& fit, const ModelSpace& space) const {
   return calibrator::misfit_p(
       fit, space, question_.error_freedom(fitted_), question_.calibration.seed);
+}
+
+double Models::held_out_p(const Model& model) const {
+  const Vector& at = model.fit.at;
+  const auto& measurements = question_.calibration.measurements;
+  const Vector predicted = model.emulator.mean(at);
+  std::vector<Index> held;
+  std::vector<double> gaps;
+  for (std::size_t j = 0; j < measurements.size(); ++j) {
+    const auto index = static_cast<Index>(j);
+    if (measurements[j].role != Role::held_out || !model.emulator.knows(index)) continue;
+    held.push_back(index);
+    gaps.push_back(measurements[j].value - question_.offset(index) - predicted(index));
+  }
+  if (held.empty()) return 1.0;
+  Matrix covariance = question_.covariance(held, held);
+  covariance.diagonal() += model.emulator.variance(at)(held);
+  const Matrix slopes = model.emulator.jacobian(at)(held, Eigen::all);
+  covariance += slopes * curvature_of(model).llt().solve(slopes.transpose());
+  const auto gap = Eigen::Map<const Vector>(gaps.data(), std::ssize(gaps));
+  return calibrator::misfit_p(gap.dot(covariance.llt().solve(gap)),
+                              0,
+                              question_.error_freedom(held),
+                              question_.calibration.seed);
 }
 
 Model Models::fit(const Additions& on, std::span<const Vector> starts) const {

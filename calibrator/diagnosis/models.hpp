@@ -57,6 +57,14 @@ class Models {
   /// The chance of such a misfit where nothing more is missing, estimated errors accounted for.
   [[nodiscard]] double misfit_p(const ModelFit& fit, const ModelSpace& space) const;
 
+  /// The same of the measurements held out, which the fitted ones predict only as well as they
+  /// know the parameters; 1 where none is held out and can be predicted.
+  ///
+  ///   Q = r' V^-1 r,   V = Sigma + J (J_f' J_f + M)^-1 J',   M of the prior, J_f of the fit
+  ///
+  /// What fitted and held-out readings share of a tolerance is left out: Q is smaller for it.
+  [[nodiscard]] double held_out_p(const Model& model) const;
+
  private:
   [[nodiscard]] TrendEmulator learn(const Additions& on) const;
 

@@ -91,6 +91,15 @@ void conclude_adequate(Diagnosis& diagnosis) {
                          "would show in them, however strong.";
     return;
   }
+  if (diagnosis.p_held_out < alpha_misfit) {
+    diagnosis.verdict = DiagnosisVerdict::not_predicted;
+    diagnosis.sentence =
+        "The fitted measurements show nothing missing, but what they predict of those held out is "
+        "wrong (p " +
+        number(diagnosis.p_held_out, 2) +
+        "): something is missing that would show in them. Let them be fitted, and diagnose again.";
+    return;
+  }
   diagnosis.verdict = DiagnosisVerdict::adequate;
   diagnosis.sentence =
       "The model is adequate within the stated tolerance: nothing is missing that "

@@ -1,6 +1,7 @@
 /// The rules by which a diagnosis decides, and its sentence.
 ///
-///   adequate     p_named >= 0.03, p_unnamed >= 0.015 and p_misfit >= 0.005: 5 % in all
+///   adequate     p_named >= 0.03, p_unnamed >= 0.015 and p_misfit >= 0.005: 5 % in all; and what is
+///                held out is missed by no more than has p_held_out >= 0.005
 ///   A, B, C, D   margin M = deviance of the best excuse - of the best refit: A above 6 where more
 ///                than one apparatus asks for the effects, B within or where one does, C below -6
 ///                where the excuse fits better; D where no misfit has p >= 0.02

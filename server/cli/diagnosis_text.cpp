@@ -184,7 +184,9 @@ std::string print_diagnosis_text(std::string_view calibration,
   if (*grade != '\0') text += " [grade " + std::string(grade) + "]";
   text += "\n\nChance of so large a score where nothing is missing: effects " +
           p_text(result->p_named) + ", single apparatus " + p_text(result->p_unnamed) +
-          ", misfit " + p_text(result->p_misfit) + "\n\n";
+          ", misfit " + p_text(result->p_misfit) +
+          (std::isfinite(result->held_out_z) ? ", held out " + p_text(result->p_held_out) : "") +
+          "\n\n";
   text += effect_table(*result) + "\n" + refit_table(*result) + "\n";
   if (!result->excuses.empty()) {
     const calibrator::Excuse& excuse = result->excuses.front();

@@ -259,6 +259,7 @@ Diagnosis read_diagnosis(const Calibration& calibration, const Json& json) {
   diagnosis.p_named = number(json.at("p").at("named"));
   diagnosis.p_unnamed = number(json.at("p").at("unnamed"));
   diagnosis.p_misfit = number(json.at("p").at("misfit"));
+  diagnosis.p_held_out = json.at("p").value("held_out", 1.0);  // older ones have none
   diagnosis.misfit = number(json.at("misfit"));
   diagnosis.freedom = number(json.at("freedom"));
   diagnosis.fitted_z = number(json.at("fitted_z"));
@@ -299,7 +300,8 @@ std::string print_diagnosis(const Calibration& calibration,
                 {"p",
                  {{"named", diagnosis.p_named},
                   {"unnamed", diagnosis.p_unnamed},
-                  {"misfit", diagnosis.p_misfit}}},
+                  {"misfit", diagnosis.p_misfit},
+                  {"held_out", diagnosis.p_held_out}}},
                 {"misfit", number_or_null(diagnosis.misfit)},
                 {"freedom", number_or_null(diagnosis.freedom)},
                 {"fitted_z", number_or_null(diagnosis.fitted_z)},

@@ -43,6 +43,10 @@ std::string change_text(const Lineage& lineage, double Comparison::*member, int 
 std::string verdict_style(const Lineage& lineage) {
   constexpr double fits = 0.02;  // as the diagnosis judges a misfit
   const Comparison& last = lineage.back().comparison;
+  const auto& diagnosis = lineage.back().diagnosis;
+  if (diagnosis && diagnosis->verdict == calibrator::DiagnosisVerdict::not_predicted) {
+    return "verdict missed";
+  }
   if (last.p >= fits) return "verdict hit";
   return lineage.size() > 1 && last.misfit < 0.5 * lineage.front().comparison.misfit
              ? "verdict met"

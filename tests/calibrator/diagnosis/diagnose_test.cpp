@@ -45,6 +45,28 @@ TEST_CASE("where nothing is missing nothing is named, and no refit is paid for",
   CHECK(diagnosis.evaluations < 70);
 }
 
+TEST_CASE("what only held-out measurements show is no adequate model", "[calibrator]") {
+  const auto diagnosed = [](stand_in::Problem problem) {
+    int held_out = 0;
+    for (calibrator::Measurement& measurement : problem.calibration.measurements) {
+      if (measurement.experiment.name != "compression") continue;
+      measurement.role = calibrator::Role::held_out;
+      ++held_out;
+    }
+    REQUIRE(held_out >= 2);
+    return stand_in::diagnose(problem);
+  };
+  const Diagnosis missed = diagnosed(stand_in::make_problem(21, {{"hysteresis", 0.9}}));
+  CHECK(missed.verdict == DiagnosisVerdict::not_predicted);
+  CHECK(missed.p_held_out < 0.005);
+  CHECK(missed.sentence.find("Let them be fitted") != std::string::npos);
+
+  const Diagnosis met = diagnosed(stand_in::make_problem(3, {}));
+  CHECK(met.verdict == DiagnosisVerdict::adequate);
+  CHECK(met.p_held_out > 0.05);
+  CHECK(met.p_held_out < 1.0);
+}
+
 TEST_CASE("a diagnosis asked twice has the same answer to the bit", "[calibrator]") {
   const auto problem = stand_in::make_problem(11, {{"weaken", 0.9}});
   const Diagnosis once = stand_in::diagnose(problem), again = stand_in::diagnose(problem);
