@@ -49,7 +49,7 @@ TEST_CASE("what only held-out measurements show is no adequate model", "[calibra
   const auto diagnosed = [](stand_in::Problem problem) {
     int held_out = 0;
     for (calibrator::Measurement& measurement : problem.calibration.measurements) {
-      if (measurement.experiment.name != "compression") continue;
+      if (measurement.experiment.name != "oedo") continue;
       measurement.role = calibrator::Role::held_out;
       ++held_out;
     }
