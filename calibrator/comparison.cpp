@@ -29,7 +29,7 @@ ComparedMeasurement row_of(const Measurement& measurement,
   row.measurement = prediction.measurement;
   row.predicted = prediction.predicted;
   row.difference = prediction.predicted - measurement.value;
-  row.measurement_error = standard_uncertainty(measurement);
+  row.measurement_error = measurement.standard_error;
   row.tolerance = tolerance_of(measurement, stated) * size_of(measurement);
   row.simulation_error = prediction.standard_error;
   row.emulator_error = prediction.emulated_deviation;
@@ -192,7 +192,6 @@ std::string sentence_of(const Calibration& calibration,
 
 /// Whether the model fits, all measurements together.
 std::string whole_sentence(const Comparison& comparison) {
-  constexpr double unlikely = 0.05;
   if (comparison.freedom <= 0.0) {
     return "As many directions were learnt as measurements fitted: that the model fits says "
            "nothing.";

@@ -12,12 +12,15 @@
 
 namespace repose::calibrator {
 
+/// p below which a model does not fit.
+inline constexpr double unlikely = 0.05;
+
 /// One measurement against its prediction; all SI.
 struct ComparedMeasurement {
   std::size_t measurement = 0;
   double predicted = 0.0;
   double difference = 0.0;         ///< predicted less measured
-  double measurement_error = 0.0;  ///< standard error and allowance of the laboratory
+  double measurement_error = 0.0;  ///< standard error of the laboratory
   double tolerance = 0.0;          ///< how closely a code's word is taken
   double simulation_error = 0.0;   ///< of the mean of the confirming replicates
   double emulator_error = 0.0;  ///< of what the emulator had promised; not in z where runs confirm

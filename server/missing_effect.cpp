@@ -115,8 +115,12 @@ Answer<std::string> compare(const db::Store& store,
     const auto parent = finished(store, own->calibration.extends->calibration);
     if (parent) before = calibrator::compare(parent->calibration, parent->fit, stated);
   }
-  return print_comparison(
-      own->calibration, calibrator::compare(own->calibration, own->fit, stated), before);
+  const auto comparison = calibrator::compare(own->calibration, own->fit, stated);
+  std::optional<calibrator::Tolerated> tolerated;
+  if (comparison.p < calibrator::unlikely) {
+    tolerated = calibrator::tolerated(own->calibration, own->fit, stated);
+  }
+  return print_comparison(own->calibration, comparison, tolerated, before);
 }
 
 Answer<std::int64_t> queue_diagnosis(db::Store& store,

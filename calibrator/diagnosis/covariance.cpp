@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include "calibrator/misfit.hpp"
-
 namespace repose::calibrator {
 
 Eigen::MatrixXd covariance_of(std::span<const Measurement> measurements, const Tolerances& stated) {
@@ -18,8 +16,7 @@ Eigen::MatrixXd covariance_of(std::span<const Measurement> measurements, const T
       covariance(i, j) = covariance(j, i) =
           shared_tolerance * tau * tolerance_of(b, stated) * size_of(b);
     }
-    const double own = standard_uncertainty(a);
-    covariance(i, i) = own * own + tau * tau;
+    covariance(i, i) = a.standard_error * a.standard_error + tau * tau;
   }
   return covariance;
 }

@@ -17,7 +17,7 @@ namespace repose::calibrator {
 /// Share of the square of a tolerance that readings of one observable have in common.
 inline constexpr double shared_tolerance = 0.75;
 
-/// Standard errors and allowances, and the shared tolerance; SI.
+/// Standard errors, and the tolerances with what they share; SI.
 Eigen::MatrixXd covariance_of(std::span<const Measurement> measurements, const Tolerances& stated);
 
 /// How far each measurement's variance is known, in degrees of freedom: of it only the standard

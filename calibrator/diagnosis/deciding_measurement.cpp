@@ -42,7 +42,7 @@ double relative_error(const Calibration& calibration, const Measurement& candida
   int count = 0;
   for (const Measurement& own : calibration.measurements) {
     if (observable_name(own) != observable_name(candidate) || size_of(own) == 0.0) continue;
-    sum += standard_uncertainty(own) / size_of(own);
+    sum += own.standard_error / size_of(own);
     ++count;
   }
   return count > 0 ? sum / count : usual_error;

@@ -35,7 +35,7 @@ constexpr int base_replicates = 8;
 constexpr double probe_strength =
     0.8;  // large steps beat replicates: the trace is read above noise
 constexpr int most_runs = 180, most_runs_with_pairs = 350;  // before what to measure next is asked
-constexpr std::uint64_t anchor_design = 1'000'000;          // apart from other designs
+constexpr std::uint64_t anchor_design = 1'000'001;          // apart from other designs
 
 UnitPoint unit_point(const Vector& x, std::size_t dimensions) {
   return {x.data(), x.data() + dimensions};
@@ -114,17 +114,12 @@ bool Inquiry::learn_offset() {
 /// is looked for around the calibration's best.
 bool Inquiry::anchor(Diagnosis& diagnosis) {
   models_.emplace(question_, runs_);
-  const Vector best = vector_of(runs_.space().coordinates(question_.fit.best));
-  std::vector<Vector> starts{best, Vector::Constant(static_cast<Index>(dimensions_), 0.5)};
-  for (const UnitPoint& u :
-       latin_hypercube(4, dimensions_, question_.calibration.seed, anchor_design)) {
-    starts.push_back(vector_of(u));
-  }
   const auto asked =
       std::ranges::count(question_.calibration.measurements, Role::fit, &Measurement::role);
   const bool learnt = std::cmp_equal(models_->fitted().size(), asked);
-  if (learnt) base_.emplace(models_->fit({}, starts));
-  const Vector centre = learnt ? base_->fit.at : best;
+  if (learnt) base_.emplace(models_->fit_calibrated());
+  const Vector centre =
+      learnt ? base_->fit.at : vector_of(runs_.space().coordinates(question_.fit.best));
   constexpr double near = 0.22, radius = 0.16;
   const auto close = std::ranges::count_if(runs_.all(), [&](const SuiteRun& run) {
     return run.strengths.empty() &&
@@ -137,13 +132,13 @@ bool Inquiry::anchor(Diagnosis& diagnosis) {
                                  {},
                                  wanted,
                                  question_.calibration.seed,
-                                 anchor_design + 1,
+                                 anchor_design,
                                  Neighbourhood{centre, radius});
     if (!ask("anchor", points)) return false;
     models_.emplace(question_, runs_);
-    if (learnt) starts.assign({centre});
+    if (learnt) base_.emplace(models_->fit({}, std::vector<Vector>{centre}));
   }
-  if (wanted > 0 || !learnt) base_.emplace(models_->fit({}, starts));
+  if (!learnt) base_.emplace(models_->fit_calibrated());
   probed_ = base_->fit.at;
   diagnosis.effects.clear();
   for (const Suspect& suspect : question_.suspects) diagnosis.effects.push_back({suspect});

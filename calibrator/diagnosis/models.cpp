@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "calibrator/design.hpp"
 #include "calibrator/diagnosis/chance.hpp"
 #include "calibrator/diagnosis/screen.hpp"
 
@@ -18,7 +19,8 @@ using Vector = Eigen::VectorXd;
 
 constexpr double prior_deviation = 0.6;     // of a free parameter, about the middle of its range
 constexpr double strength_deviation = 1.5;  // of a strength, about zero
-constexpr double threshold = 3.84;          // 95 % of chi-squared with one degree of freedom
+constexpr std::uint64_t starts_design = 1'000'000;  // apart from other designs
+constexpr double threshold = 3.84;  // 95 % of chi-squared with one degree of freedom
 
 /// What data and prior know of the parameters: the inverse of their covariance.
 Matrix curvature_of(const Model& model) {
@@ -97,6 +99,20 @@ ModelSpace Models::space(const Additions& on) const {
 double Models::misfit_p(const ModelFit& fit, const ModelSpace& space) const {
   return calibrator::misfit_p(
       fit, space, question_.error_freedom(fitted_), question_.calibration.seed);
+}
+
+Model Models::fit_calibrated() const {
+  const std::size_t dimensions = runs_.space().dimensions();
+  const auto vector_of = [&](const UnitPoint& u) -> Vector {
+    return Eigen::Map<const Vector>(u.data(), static_cast<Index>(u.size()));
+  };
+  std::vector<Vector> starts{vector_of(runs_.space().coordinates(question_.fit.best)),
+                             Vector::Constant(static_cast<Index>(dimensions), 0.5)};
+  for (const UnitPoint& u :
+       latin_hypercube(4, dimensions, question_.calibration.seed, starts_design)) {
+    starts.push_back(vector_of(u));
+  }
+  return fit({}, starts);
 }
 
 double Models::held_out_p(const Model& model) const {

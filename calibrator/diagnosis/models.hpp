@@ -33,6 +33,10 @@ class Models {
  public:
   Models(const DiagnosisQuestion& question, const SuiteRuns& runs);
 
+  /// The calibrated model, looked for from the calibration's best set, the middle of the box and a
+  /// few sets more.
+  [[nodiscard]] Model fit_calibrated() const;
+
   /// The model with these suspects free, from everything that has been run so far.
   [[nodiscard]] Model fit(const Additions& on, std::span<const Eigen::VectorXd> starts) const;
 

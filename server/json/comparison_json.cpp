@@ -2,6 +2,7 @@
 
 #include "server/json/codec.hpp"
 #include "server/json/key_json.hpp"
+#include "server/json/parameters_json.hpp"
 
 namespace repose::server {
 
@@ -42,9 +43,19 @@ Json print_fit_quality(const Comparison& comparison) {
 
 std::string print_comparison(const Calibration& calibration,
                              const Comparison& comparison,
+                             const std::optional<calibrator::Tolerated>& tolerated,
                              const std::optional<Comparison>& before) {
   Json document = print_fit_quality(comparison);
   document["text"] = comparison.sentences;
+  document["tolerated"] = nullptr;
+  if (tolerated) {
+    document["text"].push_back(sentence_of(calibration, *tolerated));
+    document["tolerated"] = {
+        {"misfit", number_or_null(tolerated->misfit)},
+        {"freedom", tolerated->freedom},
+        {"p", number_or_null(tolerated->p)},
+        {"parameters", print_parameter_set(calibration, tolerated->parameters)}};
+  }
   Json& rows = document["measurements"] = Json::array();
   for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
     rows.push_back(print_row(calibration, comparison.rows[i]));

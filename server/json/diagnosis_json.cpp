@@ -79,7 +79,7 @@ Json print_measurements(const Calibration& calibration,
     const Measurement& measurement = calibration.measurements[j];
     const double tolerance = calibrator::tolerance_of(measurement, stated);
     const double spread = tolerance * calibrator::size_of(measurement);
-    const double whole = std::hypot(calibrator::standard_uncertainty(measurement), spread);
+    const double whole = std::hypot(measurement.standard_error, spread);
     result.push_back({{"experiment", measurement.experiment.name},
                       {"settings", print_settings(measurement.experiment)},
                       {"observable", measurement.observable},
