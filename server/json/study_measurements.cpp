@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "calibrator/diagnosis/tolerance.hpp"
 #include "engine/catalogue.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/study.hpp"
@@ -113,6 +114,23 @@ bool read_rest(Members& members, Measurement& measurement, Study& study) {
   return good;
 }
 
+/// In the measurement's unit; "tolerance": as far as right codes differ on the observable.
+std::optional<double> read_allowance(const Place& place,
+                                     const ObservableInfo& observable,
+                                     double size) {
+  if (!place.exists()) return 0.0;
+  if (place.json() == "tolerance") return observable.code_spread * size;
+  if (place.json().is_string()) {
+    place.complain("an allowance is in the value's unit, or what right codes differ by",
+                   "a number from 0, or \"tolerance\"");
+    return std::nullopt;
+  }
+  const auto allowance = place.number();
+  if (!allowance || *allowance >= 0.0) return allowance;
+  place.complain("an allowance is not negative", "0 or more");
+  return std::nullopt;
+}
+
 /// The value, its uncertainty and its allowance, all in one unit.
 bool read_numbers(const Numbers& given,
                   const ObservableInfo& observable,
@@ -122,15 +140,14 @@ bool read_numbers(const Numbers& given,
   const auto unit =
       given.unit.exists() ? read_unit(given.unit, observable.unit, name) : std::nullopt;
   const auto error = read_standard_error(given, name, measurement.replicates);
-  auto allowance = given.allowance.exists() ? given.allowance.number() : std::optional(0.0);
-  if (allowance && *allowance < 0.0) {
-    given.allowance.complain("an allowance is not negative", "0 or more");
-    allowance.reset();
+  if (value && unit) {
+    measurement.observable = name;
+    measurement.unit = *unit;
+    measurement.value = *value * unit->factor;
   }
+  const double size = calibrator::size_of(measurement) / measurement.unit.factor;
+  const auto allowance = read_allowance(given.allowance, observable, size);
   if (!value || !unit || !error || !allowance) return false;
-  measurement.observable = name;
-  measurement.unit = *unit;
-  measurement.value = *value * unit->factor;
   measurement.standard_error = *error * unit->factor;
   measurement.allowance = *allowance * unit->factor;
   const bool possible = std::isfinite(measurement.value) &&

@@ -198,6 +198,22 @@ TEST_CASE("a standard deviation becomes the standard error of the mean", "[serve
   CHECK(read(json).measurements[0].standard_error == Approx(0.02));
 }
 
+TEST_CASE("an allowance of what right codes differ by is in the measurement's unit", "[server]") {
+  Json box = study();
+  box["measurements"][0] = {{"experiment", "tilting_box"},
+                            {"observable", "static_angle"},
+                            {"value", 30},
+                            {"unit", "deg"},
+                            {"standard_error", 0.5},
+                            {"allowance", "tolerance"}};
+  const auto& angle = read(box).measurements.front();
+  // A tenth of the tangent: half of sin(60 deg) rad for 100 %.
+  CHECK(angle.allowance == Approx(0.1 * 0.5 * std::sqrt(3.0) / 2.0));
+  Json number = box;
+  number["measurements"][0]["allowance"] = angle.allowance * 180.0 / M_PI;
+  CHECK(read(number).measurements.front().allowance == Approx(angle.allowance));
+}
+
 TEST_CASE("a measurement without an uncertainty is refused with the sentence that mends it",
           "[server]") {
   Json json = study();
