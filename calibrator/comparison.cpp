@@ -30,7 +30,7 @@ ComparedMeasurement row_of(const Measurement& measurement,
   row.predicted = prediction.predicted;
   row.difference = prediction.predicted - measurement.value;
   row.measurement_error = measurement.standard_error;
-  row.tolerance = tolerance_of(measurement, stated) * size_of(measurement);
+  row.tolerance = model_error_of(measurement, stated);
   row.simulation_error = prediction.standard_error;
   row.emulator_error = prediction.emulated_deviation;
   row.z = row.difference / std::hypot(row.measurement_error, row.tolerance, row.simulation_error);

@@ -16,7 +16,8 @@ Eigen::MatrixXd covariance_of(std::span<const Measurement> measurements, const T
       covariance(i, j) = covariance(j, i) =
           shared_tolerance * tau * tolerance_of(b, stated) * size_of(b);
     }
-    covariance(i, i) = a.standard_error * a.standard_error + tau * tau;
+    const double model = model_error_of(a, stated);
+    covariance(i, i) = a.standard_error * a.standard_error + model * model;
   }
   return covariance;
 }

@@ -3,7 +3,9 @@
 /// Readings of one observable share most of what two right codes differ by, but not all: a drum at
 /// 15, 30 and 60 rpm was 5 and 8 % steeper and 6 % flatter than another code's.
 ///
-///   Cov(t_i, t_j) = 0.75 tau_i tau_j + 0.25 tau_i^2 [i = j],   tau_j = spread x size of y_j
+///   Cov(t_i, t_j) = 0.75 tau_i tau_j,  i != j      Var(t_i) = max(tau_i, a_i)^2
+///
+///   tau_j  spread x size of y_j     a_j  allowance of the measurement, its own
 #pragma once
 
 #include <span>

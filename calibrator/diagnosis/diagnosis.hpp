@@ -17,24 +17,24 @@
 namespace repose::calibrator {
 
 enum class DiagnosisVerdict : std::uint8_t {
-  adequate,      ///< nothing is missing that these data would show
-  named,         ///< one effect is missing
-  family,        ///< one of several that leave the same trace in these data
-  pair,          ///< two effects are missing
-  outside,       ///< something the catalogue lacks, located at one apparatus
-  unexplained,   ///< something is missing that neither the catalogue nor one apparatus explains
-  not_testable,  ///< whatever is missing would not show in these data
+  adequate,       ///< nothing is missing that these data would show
+  named,          ///< one effect is missing
+  family,         ///< one of several that leave the same trace in these data
+  pair,           ///< two effects are missing
+  outside,        ///< something the catalogue lacks, located at one apparatus
+  unexplained,    ///< something is missing that neither the catalogue nor one apparatus explains
+  not_testable,   ///< whatever is missing would not show in these data
   not_predicted,  ///< only the measurements held out show that something is missing
 };
 
 inline constexpr std::array<std::string_view, 8> diagnosis_verdict_names{"adequate",
-                                                                       "named",
-                                                                       "family",
-                                                                       "pair",
-                                                                       "outside",
-                                                                       "unexplained",
-                                                                       "not_testable",
-                                                                       "not_predicted"};
+                                                                         "named",
+                                                                         "family",
+                                                                         "pair",
+                                                                         "outside",
+                                                                         "unexplained",
+                                                                         "not_testable",
+                                                                         "not_predicted"};
 
 /// How well a name is founded.
 enum class Grade : std::uint8_t {
@@ -115,13 +115,13 @@ struct DecidingMeasurement {
 struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::adequate;
   Grade grade = Grade::none;
-  std::string sentence;                     ///< the verdict for people
-  double p_named = 1.0;                     ///< of the largest score of an effect
-  double p_unnamed = 1.0;                   ///< of the largest score of an excuse
-  double p_misfit = 1.0;                    ///< of the calibrated model's misfit
+  std::string sentence;     ///< the verdict for people
+  double p_named = 1.0;     ///< of the largest score of an effect
+  double p_unnamed = 1.0;   ///< of the largest score of an excuse
+  double p_misfit = 1.0;    ///< of the calibrated model's misfit
   double p_held_out = 1.0;  ///< of its misfit to what is held out; 1 where nothing is
-  double misfit = 0.0;                      ///< its Q
-  double freedom = 0.0;                     ///< targets less fitted directions
+  double misfit = 0.0;      ///< its Q
+  double freedom = 0.0;     ///< targets less fitted directions
   double fitted_z = 0.0, held_out_z = 0.0;  ///< root mean square before anything is added
   engine::ParameterSet parameters;          ///< where it was probed: the most probable set
   std::vector<double> predicted;            ///< SI, one per measurement, there

@@ -21,13 +21,15 @@ double size_of(const Measurement& measurement) {
 double tolerance_of(const Measurement& measurement, const Tolerances& stated) {
   const auto own = stated.find(observable_name(measurement));
   if (own != stated.end()) return own->second;
-  const double size = size_of(measurement);
-  if (measurement.allowance > 0.0 && size > 0.0) return measurement.allowance / size;
   const engine::ExperimentInfo* experiment = engine::find_experiment(measurement.experiment.name);
   if (experiment == nullptr) return 0.0;
   const auto observable = std::ranges::find(
       experiment->observables, measurement.observable, &engine::ObservableInfo::name);
   return observable == experiment->observables.end() ? 0.0 : observable->code_spread;
+}
+
+double model_error_of(const Measurement& measurement, const Tolerances& stated) {
+  return std::max(measurement.allowance, tolerance_of(measurement, stated) * size_of(measurement));
 }
 
 }  // namespace repose::calibrator

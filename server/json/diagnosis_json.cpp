@@ -78,8 +78,8 @@ Json print_measurements(const Calibration& calibration,
   for (std::size_t j = 0; j < calibration.measurements.size(); ++j) {
     const Measurement& measurement = calibration.measurements[j];
     const double tolerance = calibrator::tolerance_of(measurement, stated);
-    const double spread = tolerance * calibrator::size_of(measurement);
-    const double whole = std::hypot(measurement.standard_error, spread);
+    const double whole =
+        std::hypot(measurement.standard_error, calibrator::model_error_of(measurement, stated));
     result.push_back({{"experiment", measurement.experiment.name},
                       {"settings", print_settings(measurement.experiment)},
                       {"observable", measurement.observable},

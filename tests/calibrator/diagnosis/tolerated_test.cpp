@@ -1,6 +1,7 @@
 #include "calibrator/diagnosis/tolerated.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -34,15 +35,23 @@ TEST_CASE("from too few runs no set is promised", "[calibrator]") {
   CHECK_FALSE(tolerated(problem.calibration, problem.fit, {}).has_value());
 }
 
-TEST_CASE("an allowance takes the place of the spread between codes", "[calibrator]") {
+TEST_CASE("an allowance larger than the tolerance takes its place", "[calibrator]") {
   Measurement kettle;
   kettle.experiment.name = "kettle";
   kettle.observable = "bulk_density";
   kettle.value = 700.0;
   kettle.standard_error = 3.0;
-  CHECK(tolerance_of(kettle, {}) == Approx(0.01));
-  kettle.allowance = 21.0;
-  CHECK(tolerance_of(kettle, {}) == Approx(0.03));
-  CHECK(covariance_of(std::vector{kettle}, {})(0, 0) == Approx(3.0 * 3.0 + 21.0 * 21.0));
-  CHECK(tolerance_of(kettle, {{"kettle.bulk_density", 0.002}}) == 0.002);
+  std::vector<Measurement> kettles(2, kettle);
+  const auto variances = [&] {
+    const Eigen::MatrixXd covariance = covariance_of(kettles, {});
+    return std::pair(covariance(0, 0), covariance(0, 1));
+  };
+  CHECK(variances().first == Approx(3.0 * 3.0 + 7.0 * 7.0));  // right codes differ by 1 %
+  CHECK(variances().second == Approx(0.75 * 7.0 * 7.0));
+  kettles[0].allowance = 7.0;  // the same, stated
+  CHECK(variances().first == Approx(3.0 * 3.0 + 7.0 * 7.0));
+  kettles[0].allowance = 21.0;
+  CHECK(variances().first == Approx(3.0 * 3.0 + 21.0 * 21.0));
+  CHECK(variances().second == Approx(0.75 * 7.0 * 7.0));
+  CHECK(model_error_of(kettles[0], {{"kettle.bulk_density", 0.05}}) == Approx(35.0));
 }
