@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "server/json/place.hpp"
+#include "calibrator/phrase.hpp"
 #include "server/json/text.hpp"
 
 namespace repose::server {
@@ -35,8 +35,8 @@ ComparisonRow read_row(const Json& json, std::size_t measurement) {
 std::string trend_text(const Json& json) {
   const double slope = number(json.at("slope")), z = number(json.at("z"));
   return text_of(json.at("observable")) + " changes with " + text_of(json.at("setting")) + ": z " +
-         (slope < 0.0 ? "falls" : "rises") + " by " + short_number(std::abs(slope)) +
-         " per factor e (" + short_number(std::abs(z)) + " standard errors)";
+         (slope < 0.0 ? "falls" : "rises") + " by " + calibrator::number(std::abs(slope), 2) +
+         " per factor e (" + calibrator::number(std::abs(z), 2) + " standard errors)";
 }
 
 Json head_of(const db::DiagnosisRecord& record) {
