@@ -78,7 +78,6 @@ def measure(laboratory, reading, info, factors, noise):
               "value": float(f"{mean * (1 + reading['noise'] * noise.gauss(0, 1)):.5g}"),
               "unit": unit,
               "standard_error": float(f"{math.hypot(scatter, reading['noise'] * mean):.3g}"),
-              "allowance": "tolerance",  # it is another code's
               "settings": settings}
     if reading.get("held_out"):
         answer["role"] = "held_out"
