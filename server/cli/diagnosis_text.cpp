@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "engine/catalogue.hpp"
 #include "server/cli/next_command.hpp"
@@ -23,9 +24,10 @@ using calibrator::Measurement;
 
 namespace {
 
-std::string label_of(const Measurement& measurement) {
+/// `measurements`: among which it is told from the others.
+std::string label_of(std::span<const Measurement> measurements, const Measurement& measurement) {
   std::string label = measurement_label(measurement);
-  const std::string settings = settings_label(measurement.experiment);
+  const std::string settings = distinction_label(measurements, measurement);
   if (!settings.empty()) label += " (" + settings + ")";
   if (measurement.role == calibrator::Role::held_out) label += " (held out)";
   return label;
@@ -134,7 +136,7 @@ std::string next_table(const Diagnosis& diagnosis) {
     const double factor = next.unit.factor;
     const int decimals =
         decimals_for(next.predicted.front() / factor, next.standard_error / factor);
-    std::vector<std::string> row{label_of(measurement)};
+    std::vector<std::string> row{label_of({}, measurement)};
     for (const double value : next.predicted) row.push_back(fixed_text(value / factor, decimals));
     row.push_back(fixed_text(next.standard_error / factor, decimals) + unit_suffix(next.unit));
     row.push_back(fixed_text(next.evidence, 1));
@@ -155,7 +157,7 @@ std::string prediction_table(const Calibration& calibration, const Diagnosis& di
     const int decimals =
         decimals_for(measurement.value / factor, measurement.standard_error / factor);
     std::vector<std::string> row{
-        label_of(measurement),
+        label_of(calibration.measurements, measurement),
         with_error(measurement.value, measurement.standard_error, measurement.unit),
         fixed_text(diagnosis.predicted[j] / factor, decimals)};
     if (best != nullptr) row.push_back(fixed_text(best->predicted[j] / factor, decimals));
@@ -218,7 +220,7 @@ std::string print_comparison_text(std::string_view calibration, std::string_view
     if (row.measurement >= own->calibration->measurements.size()) break;
     const Measurement& measurement = own->calibration->measurements[row.measurement];
     const int decimals = decimals_for(row.difference, row.lab);
-    std::vector<std::string> cells{label_of(measurement),
+    std::vector<std::string> cells{label_of(own->calibration->measurements, measurement),
                                    fixed_text(row.measured, decimals),
                                    fixed_text(row.predicted, decimals),
                                    fixed_text(row.difference, decimals),

@@ -29,7 +29,7 @@ std::string measurement_table(const Calibration& calibration, const Fit& fit) {
   for (const FitLine& line : lines_of(calibration, fit)) {
     const Measurement& measurement = line.measured.front();
     std::string label = line_label(line.measured);
-    const std::string settings = settings_label(measurement.experiment);
+    const std::string settings = distinction_label(calibration.measurements, measurement);
     if (!settings.empty() && !line.is_curve()) label += " (" + settings + ")";
     if (measurement.role == calibrator::Role::held_out) label += " (held out)";
     table.row(

@@ -11,6 +11,7 @@
 
 namespace repose::server {
 
+using calibrator::Calibration;
 using calibrator::Diagnosis;
 using calibrator::EffectFinding;
 using calibrator::Measurement;
@@ -65,8 +66,9 @@ void draw_bar(Svg& svg, const Axis& x, double value, double top, double size, co
 }
 
 void draw_print(
-    Svg& svg, const Axis& x, const Measurement& measurement, const Print& print, double top) {
-  svg.text(10.0, top + 14.5, place_label(measurement), "start", "small");
+    Svg& svg, const Axis& x, const Calibration& calibration, const Print& print, double top) {
+  const Measurement& measurement = calibration.measurements[print.measurement];
+  svg.text(10.0, top + 14.5, place_label(calibration, measurement), "start", "small");
   draw_bar(svg, x, print.raw, top + 3.0, row_height - 6.0, "raw");
   draw_bar(svg, x, print.left, top + 6.5, row_height - 13.0, "projected");
   if (!std::isfinite(print.missing)) return;
@@ -105,7 +107,7 @@ std::string panel(const Generation& generation, std::size_t effect, double stren
       top += group_height;
     }
     group = name;
-    draw_print(svg, x, measurements[print.measurement], print, top);
+    draw_print(svg, x, generation.calibration(), print, top);
     top += row_height;
   }
   svg.line(left, bottom, right, bottom, "axis");

@@ -39,7 +39,7 @@ void draw_heat_row(Svg& svg,
   const Measurement& what = lineage.front().calibration().measurements[measurement];
   svg.text(12.0,
            top + 16.5,
-           place_label(what) + (held_out(what) ? " (held out)" : ""),
+           place_label(lineage.front().calibration(), what) + (held_out(what) ? " (held out)" : ""),
            "start",
            "small");
   for (std::size_t g = 0; g < lineage.size(); ++g) {

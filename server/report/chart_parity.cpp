@@ -10,6 +10,7 @@
 
 namespace repose::server {
 
+using calibrator::Calibration;
 using calibrator::ComparedMeasurement;
 using calibrator::Measurement;
 
@@ -79,8 +80,9 @@ void draw_allowed(
   bar(parts.measurement, "part one");
 }
 
-std::string hint_of(const Measurement& measurement, const ComparedMeasurement& row) {
-  return place_label(measurement) + ": measured " +
+std::string hint_of(const Calibration& calibration, const ComparedMeasurement& row) {
+  const Measurement& measurement = calibration.measurements[row.measurement];
+  return place_label(calibration, measurement) + ": measured " +
          with_error(measurement.value, row.measurement_error, measurement.unit) + ", predicted " +
          with_error(row.predicted, row.simulation_error, measurement.unit) + ", z " +
          fixed_text(row.z, 1);
@@ -106,7 +108,7 @@ std::string panel(const Lineage& lineage, const MeasurementGroup& group) {
                y(row->predicted / unit.factor),
                g == 0 ? 4.5 : 5.5,
                "model " + model_style(g) + (open ? " hollow" : ""),
-               model_name(lineage[g]) + ", " + hint_of(measurements[m], *row));
+               model_name(lineage[g]) + ", " + hint_of(lineage[g].calibration(), *row));
   };
   for (const std::size_t m : group.measurements) {
     draw(0, m);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "calibrator/comparison.hpp"
 #include "engine/catalogue.hpp"
 #include "server/report/number_text.hpp"
 
@@ -60,6 +61,23 @@ std::string settings_label(const engine::Experiment& experiment) {
     }
   }
   return text;
+}
+
+std::string distinction_label(std::span<const calibrator::Measurement> measurements,
+                              const calibrator::Measurement& own) {
+  engine::Experiment shown = own.experiment;
+  shown.settings.clear();
+  for (const calibrator::Measurement& other : measurements) {
+    if (calibrator::observable_name(other) != calibrator::observable_name(own)) continue;
+    // Of either: what one has given and the other has not may differ.
+    for (const auto* settings : {&own.experiment.settings, &other.experiment.settings}) {
+      for (const auto& [name, value] : *settings) {
+        const double here = calibrator::setting_of(own, name);
+        if (here != calibrator::setting_of(other, name)) shown.settings[name] = here;
+      }
+    }
+  }
+  return settings_label(shown.settings.empty() ? own.experiment : shown);
 }
 
 std::string line_label(std::span<const calibrator::Measurement> line) {

@@ -18,6 +18,11 @@ std::string measurement_label(const calibrator::Measurement& measurement);
 /// "speed 15 rpm, height 0.3 m"; empty where all settings are the defaults.
 std::string settings_label(const engine::Experiment& experiment);
 
+/// "speed 15 rpm": of the settings those in which the measurements of its observable differ; all
+/// that it has where it is the only one.
+std::string distinction_label(std::span<const calibrator::Measurement> measurements,
+                              const calibrator::Measurement& own);
+
 /// "drum: dynamic angle, 5 points along speed"; of a single measurement as above.
 std::string line_label(std::span<const calibrator::Measurement> line);
 

@@ -53,8 +53,8 @@ std::vector<MeasurementGroup> groups_by_experiment(const Calibration& calibratio
   });
 }
 
-std::string place_label(const Measurement& measurement) {
-  std::string label = settings_label(measurement.experiment);
+std::string place_label(const Calibration& calibration, const Measurement& measurement) {
+  std::string label = distinction_label(calibration.measurements, measurement);
   return label.empty() ? "as usual" : label;
 }
 

@@ -38,8 +38,9 @@ struct MeasurementGroup {
 std::vector<MeasurementGroup> groups_by_observable(const calibrator::Calibration& calibration);
 std::vector<MeasurementGroup> groups_by_experiment(const calibrator::Calibration& calibration);
 
-/// What tells a measurement from the others of its group: its settings, or its name.
-std::string place_label(const calibrator::Measurement& measurement);
+/// What tells a measurement from the others of its group: its settings, or that it has the usual ones.
+std::string place_label(const calibrator::Calibration& calibration,
+                        const calibrator::Measurement& measurement);
 
 /// The comparison's row of that measurement; nothing where it was not predicted.
 const calibrator::ComparedMeasurement* row_of(const Generation& generation,

@@ -276,8 +276,8 @@ std::string next_section(const Generation& generation) {
     what.experiment = next.experiment;
     what.observable = next.observable;
     const double factor = next.unit.factor, error = next.standard_error / factor;
-    text += "<tr><td>" + escaped(measurement_label(what)) + element("small", place_label(what)) +
-            "</td>";
+    text += "<tr><td>" + escaped(measurement_label(what)) +
+            element("small", settings_label(next.experiment)) + "</td>";
     for (std::size_t r = 0; r < next.predicted.size() && r < rivals.size(); ++r) {
       const double value = next.predicted[r] / factor;
       text +=
