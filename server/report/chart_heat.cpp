@@ -30,6 +30,13 @@ std::string heat_style(double z) {
 
 constexpr double map_width = 480.0, row_height = 25.0, group_height = 28.0, map_head = 46.0;
 
+/// Cut where it does not fit; it stands in full elsewhere on the page.
+std::string fitted(std::string text, double space) {
+  constexpr double letter = 6.8;
+  const auto most = static_cast<std::size_t>(std::max(2.0, space / letter));
+  return text.size() <= most ? text : text.substr(0, most - 1) + "…";
+}
+
 void draw_heat_row(Svg& svg,
                    const Lineage& lineage,
                    std::size_t measurement,
@@ -37,9 +44,12 @@ void draw_heat_row(Svg& svg,
                    double left,
                    double column) {
   const Measurement& what = lineage.front().calibration().measurements[measurement];
-  svg.text(12.0,
+  constexpr double indent = 12.0;
+  const std::string mark = held_out(what) ? " (held out)" : "";
+  const double space = held_out(what) ? 68.0 : 0.0;
+  svg.text(indent,
            top + 16.5,
-           place_label(lineage.front().calibration(), what) + (held_out(what) ? " (held out)" : ""),
+           fitted(place_label(lineage.front().calibration(), what), left - indent - space) + mark,
            "start",
            "small");
   for (std::size_t g = 0; g < lineage.size(); ++g) {
@@ -55,14 +65,6 @@ void draw_heat_row(Svg& svg,
              "middle",
              std::abs(z) > 4.0 ? "heat-text deep" : "heat-text");
   }
-}
-
-/// Where a model's name does not fit its column it is cut; the legend has it in full.
-std::string head_of(const Generation& generation, double column) {
-  std::string name = model_name(generation);
-  const auto most = static_cast<std::size_t>(column / 6.8);
-  if (name.size() > most) name = name.substr(0, most > 1 ? most - 1 : 1) + "…";
-  return name;
 }
 
 }  // namespace
@@ -94,7 +96,7 @@ std::string residual_map(const Lineage& lineage) {
   Svg svg(map_width, size + 4.0, "Differences in standard errors, by measurement and model");
   for (std::size_t g = 0; g < lineage.size(); ++g) {
     const double middle = left + column * (static_cast<double>(g) + 0.5);
-    svg.text(middle, 14.0, head_of(lineage[g], column), "middle", "label small");
+    svg.text(middle, 14.0, fitted(model_name(lineage[g]), column), "middle", "label small");
     svg.text(
         middle, 32.0, "rms " + fixed_text(lineage[g].comparison.fitted_z, 2), "middle", "quiet");
   }
