@@ -34,7 +34,10 @@ constexpr double map_width = 480.0, row_height = 25.0, group_height = 28.0, map_
 std::string fitted(std::string text, double space) {
   constexpr double letter = 6.8;
   const auto most = static_cast<std::size_t>(std::max(2.0, space / letter));
-  return text.size() <= most ? text : text.substr(0, most - 1) + "…";
+  if (text.size() <= most) return text;
+  std::size_t end = most - 1;
+  while (end > 0 && (text[end] & 0xC0) == 0x80) --end;  // not inside a letter of UTF-8
+  return text.substr(0, end) + "…";
 }
 
 void draw_heat_row(Svg& svg,
