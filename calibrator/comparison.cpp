@@ -5,13 +5,13 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <set>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "calibrator/diagnosis/chance.hpp"
 #include "calibrator/diagnosis/covariance.hpp"
-#include "calibrator/misfit.hpp"
 #include "calibrator/phrase.hpp"
 #include "engine/catalogue.hpp"
 
@@ -95,23 +95,14 @@ using Group = std::vector<const ComparedMeasurement*>;
 
 /// Settings that differ within the group, choices left out.
 std::vector<std::string> conditions_of(const Calibration& calibration, const Group& group) {
-  std::map<std::string, int> named;
-  for (const ComparedMeasurement* row : group) {
-    for (const auto& entry : calibration.measurements[row->measurement].experiment.settings) {
-      ++named[entry.first];
-    }
-  }
-  std::vector<std::string> result;
-  for (const auto& [name, times] : named) {
-    const auto* info = setting_info(calibration.measurements[group.front()->measurement], name);
-    if (info != nullptr && !info->choices.empty()) continue;
-    const double first = setting_of(calibration.measurements[group.front()->measurement], name);
-    const bool differs = std::ranges::any_of(group, [&](const ComparedMeasurement* row) {
-      return setting_of(calibration.measurements[row->measurement], name) != first;
-    });
-    if (differs) result.push_back(name);
-  }
-  return result;
+  const Measurement& what = calibration.measurements[group.front()->measurement];
+  std::vector<std::string> names =
+      differing_settings(calibration.measurements, observable_name(what));
+  std::erase_if(names, [&](const std::string& name) {
+    const auto* info = setting_info(what, name);
+    return info != nullptr && !info->choices.empty();
+  });
+  return names;
 }
 
 /// Straight line through z over the condition (its logarithm where all are above zero), by
@@ -223,6 +214,25 @@ double setting_of(const Measurement& measurement, const std::string& name) {
     if (info->settings[i].name == name) return values[i];
   }
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+std::vector<std::string> differing_settings(std::span<const Measurement> measurements,
+                                            const std::string& observable) {
+  std::vector<const Measurement*> like;
+  std::set<std::string> named;
+  for (const Measurement& measurement : measurements) {
+    if (observable_name(measurement) != observable) continue;
+    like.push_back(&measurement);
+    for (const auto& entry : measurement.experiment.settings) named.insert(entry.first);
+  }
+  std::vector<std::string> result;
+  for (const std::string& name : named) {
+    const double first = setting_of(*like.front(), name);
+    const bool differs = std::ranges::any_of(
+        like, [&](const Measurement* other) { return setting_of(*other, name) != first; });
+    if (differs) result.push_back(name);
+  }
+  return result;
 }
 
 Comparison compare(const Calibration& calibration, const Fit& fit, const Tolerances& stated) {

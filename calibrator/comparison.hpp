@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,10 @@ struct Comparison {
 /// A setting's value for that measurement, the default where it is not given; NaN where there is
 /// none.
 double setting_of(const Measurement& measurement, const std::string& name);
+
+/// Names of the settings in which the measurements of that observable differ.
+std::vector<std::string> differing_settings(std::span<const Measurement> measurements,
+                                            const std::string& observable);
 
 Comparison compare(const Calibration& calibration, const Fit& fit, const Tolerances& stated = {});
 

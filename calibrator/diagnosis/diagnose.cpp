@@ -114,9 +114,7 @@ bool Inquiry::learn_offset() {
 /// is looked for around the calibration's best.
 bool Inquiry::anchor(Diagnosis& diagnosis) {
   models_.emplace(question_, runs_);
-  const auto asked =
-      std::ranges::count(question_.calibration.measurements, Role::fit, &Measurement::role);
-  const bool learnt = std::cmp_equal(models_->fitted().size(), asked);
+  const bool learnt = models_->knows_all_fitted();
   if (learnt) base_.emplace(models_->fit_calibrated());
   const Vector centre =
       learnt ? base_->fit.at : vector_of(runs_.space().coordinates(question_.fit.best));

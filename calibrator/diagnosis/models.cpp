@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -99,6 +100,12 @@ ModelSpace Models::space(const Additions& on) const {
 double Models::misfit_p(const ModelFit& fit, const ModelSpace& space) const {
   return calibrator::misfit_p(
       fit, space, question_.error_freedom(fitted_), question_.calibration.seed);
+}
+
+bool Models::knows_all_fitted() const {
+  return std::cmp_equal(
+      fitted_.size(),
+      std::ranges::count(question_.calibration.measurements, Role::fit, &Measurement::role));
 }
 
 Model Models::fit_calibrated() const {

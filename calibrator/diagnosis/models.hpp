@@ -51,6 +51,7 @@ class Models {
 
   /// Measurements that are fitted and that enough runs have observed.
   [[nodiscard]] const std::vector<Eigen::Index>& fitted() const { return fitted_; }
+  [[nodiscard]] bool knows_all_fitted() const;  ///< whether that is every one of the study's
   [[nodiscard]] const Eigen::VectorXd& targets() const { return targets_; }
 
   [[nodiscard]] Predictor predictor(const TrendEmulator& emulator) const;

@@ -1,7 +1,5 @@
 #include "calibrator/diagnosis/tolerated.hpp"
 
-#include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "calibrator/comparison.hpp"
@@ -20,8 +18,7 @@ std::optional<Tolerated> tolerated(const Calibration& calibration,
   const Evaluator nothing;  // is asked
   const SuiteRuns runs(calibration, question.suspects, nothing, fit);
   const Models models(question, runs);
-  const auto asked = std::ranges::count(calibration.measurements, Role::fit, &Measurement::role);
-  if (!std::cmp_equal(models.fitted().size(), asked)) return std::nullopt;
+  if (!models.knows_all_fitted()) return std::nullopt;
   const Model model = models.fit_calibrated();
   const std::size_t dimensions = runs.space().dimensions();
   return Tolerated{
@@ -43,8 +40,7 @@ std::string sentence_of(const Calibration& calibration, const Tolerated& tolerat
     values.push_back(parameter_name(parameter.key) + " " + quantity(value, parameter.unit, 3));
   }
   return "The best set follows the laboratory's errors alone. Within the tolerances its runs "
-         "promise "
-         "a set of the same model that fits" +
+         "promise a set of the same model that fits" +
          chance + ": " + enumerate(values) +
          ". To calibrate for it, let the study's measurements have \"allowance\": \"tolerance\".";
 }

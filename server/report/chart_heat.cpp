@@ -31,7 +31,7 @@ std::string heat_style(double z) {
 constexpr double map_width = 480.0, row_height = 25.0, group_height = 28.0, map_head = 46.0;
 
 /// Cut where it does not fit; it stands in full elsewhere on the page.
-std::string fitted(std::string text, double space) {
+std::string cut(std::string text, double space) {
   constexpr double letter = 6.8;
   const auto most = static_cast<std::size_t>(std::max(2.0, space / letter));
   if (text.size() <= most) return text;
@@ -52,7 +52,7 @@ void draw_heat_row(Svg& svg,
   const double space = held_out(what) ? 68.0 : 0.0;
   svg.text(indent,
            top + 16.5,
-           fitted(place_label(lineage.front().calibration(), what), left - indent - space) + mark,
+           cut(place_label(lineage.front().calibration(), what), left - indent - space) + mark,
            "start",
            "small");
   for (std::size_t g = 0; g < lineage.size(); ++g) {
@@ -99,7 +99,7 @@ std::string residual_map(const Lineage& lineage) {
   Svg svg(map_width, size + 4.0, "Differences in standard errors, by measurement and model");
   for (std::size_t g = 0; g < lineage.size(); ++g) {
     const double middle = left + column * (static_cast<double>(g) + 0.5);
-    svg.text(middle, 14.0, fitted(model_name(lineage[g]), column), "middle", "label small");
+    svg.text(middle, 14.0, cut(model_name(lineage[g]), column), "middle", "label small");
     svg.text(
         middle, 32.0, "rms " + fixed_text(lineage[g].comparison.fitted_z, 2), "middle", "quiet");
   }

@@ -67,15 +67,9 @@ std::string distinction_label(std::span<const calibrator::Measurement> measureme
                               const calibrator::Measurement& own) {
   engine::Experiment shown = own.experiment;
   shown.settings.clear();
-  for (const calibrator::Measurement& other : measurements) {
-    if (calibrator::observable_name(other) != calibrator::observable_name(own)) continue;
-    // Of either: what one has given and the other has not may differ.
-    for (const auto* settings : {&own.experiment.settings, &other.experiment.settings}) {
-      for (const auto& [name, value] : *settings) {
-        const double here = calibrator::setting_of(own, name);
-        if (here != calibrator::setting_of(other, name)) shown.settings[name] = here;
-      }
-    }
+  for (const std::string& name :
+       calibrator::differing_settings(measurements, calibrator::observable_name(own))) {
+    shown.settings[name] = calibrator::setting_of(own, name);
   }
   return settings_label(shown.settings.empty() ? own.experiment : shown);
 }
