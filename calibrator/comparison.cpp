@@ -157,7 +157,7 @@ std::string miss_of(const Measurement& measurement,
     text += quantity(
         setting_of(measurement, conditions[i]), info != nullptr ? info->unit : engine::Unit{}, 4);
   }
-  return measurement.role == Role::held_out ? text + " (held out)" : text;
+  return held_out(measurement) ? text + " (held out)" : text;
 }
 
 /// "The model's restitution (drop) is 0.06 too high at 600 mm and 0.05 too low at 50 mm."

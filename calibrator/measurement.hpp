@@ -35,6 +35,9 @@ struct Measurement {
 /// The same experiment under the same settings, defaults spelt out or not, whatever the fidelity.
 bool is_same_question(const engine::Experiment& a, const engine::Experiment& b);
 
+/// Set aside, not fitted.
+inline bool held_out(const Measurement& measurement) { return measurement.role == Role::held_out; }
+
 /// Two readings of one thing, whatever they read and whoever made them.
 bool is_same_quantity(const Measurement& a, const Measurement& b);
 

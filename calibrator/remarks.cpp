@@ -181,7 +181,7 @@ void on_verdict(const Calibration& calibration, const Fit& fit, Sentences& out) 
   }
   for (const Prediction& prediction : fit.predictions) {
     const Measurement& measurement = calibration.measurements[prediction.measurement];
-    if (measurement.role != Role::held_out || prediction.replicates == 0) continue;
+    if (!held_out(measurement) || prediction.replicates == 0) continue;
     if (std::abs(prediction.z) <= 2.0) continue;
     out.push_back("The held-out " + measurement_name(measurement) +
                   " is not predicted: " + quantity(prediction.predicted, measurement) +

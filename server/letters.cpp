@@ -16,6 +16,14 @@ std::string lower_case(std::string_view text) {
   return result;
 }
 
+std::string lower_first(std::string text) {
+  const auto is_capital = [&](std::size_t i) {
+    return i < text.size() && lower_case(text[i]) != text[i];
+  };
+  if (is_capital(0) && !is_capital(1)) text.front() = lower_case(text.front());
+  return text;
+}
+
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t";
   text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));

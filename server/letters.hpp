@@ -8,6 +8,8 @@ namespace repose::server {
 
 char lower_case(char letter);
 std::string lower_case(std::string_view text);
+/// A heading in the midst of a sentence; JKR stays JKR.
+std::string lower_first(std::string text);
 
 /// Without the blanks and tabs at its ends.
 std::string_view trimmed(std::string_view text);

@@ -44,10 +44,7 @@ std::optional<db::DiagnosisRecord> last_finished(const std::vector<db::Diagnosis
 
 Answer<std::string> lineage(const db::Store& store, std::int64_t id) {
   auto record = store.calibration(id);
-  if (!record) {
-    return engine::Unexpected{
-        Refusal{Refusal::Kind::not_found, "there is no calibration " + std::to_string(id), {}}};
-  }
+  if (!record) return engine::Unexpected{not_found("calibration", id)};
   std::vector<db::CalibrationRecord> waiting{root_of(store, *std::move(record))};
   std::vector<Descent> found;
   std::set<std::int64_t> seen;

@@ -18,10 +18,6 @@ using engine::Unexpected;
 
 namespace {
 
-Refusal invalid(std::string what, Problems problems) {
-  return {Refusal::Kind::invalid, std::move(what), std::move(problems)};
-}
-
 Refusal no_such_set(const std::string& name, const std::optional<std::int64_t>& version) {
   return {Refusal::Kind::not_found,
           "there is no measurement set '" + name + "'" +
@@ -76,7 +72,7 @@ Answer<std::string> put_measurement_set(db::Store& store,
   if (!is_name(name)) return Unexpected{no_name(name)};
   auto set =
       table_of ? parse_measurement_table(content, *table_of) : parse_measurement_set(content);
-  if (!set) return Unexpected{invalid("the measurements have problems", set.error())};
+  if (!set) return Unexpected{invalid("the measurement set", set.error())};
   return print_measurement_set(
       db::MeasurementStore(store).put(name, set->material, set->measurements, microseconds_now()));
 }
@@ -92,18 +88,17 @@ Answer<std::string> measurement_set(db::Store& store,
 
 Answer<ResolvedSubmission> resolve_submission(db::Store& store, std::string_view text) {
   auto submission = parse_submission(text);
-  if (!submission) return Unexpected{invalid("the submission has problems", submission.error())};
+  if (!submission) return Unexpected{invalid("the submission", submission.error())};
   ResolvedSubmission result{submission->study, {submission->material, std::nullopt}, false};
   const auto finish = [&](const std::string& named_at) -> Answer<ResolvedSubmission> {
     Problems problems = take_grain(store, named_at, result);
     if (problems.empty()) return std::move(result);
-    std::string message = "the study has " + counted(problems);
-    return Unexpected{invalid(std::move(message), std::move(problems))};
+    return Unexpected{invalid("the study", std::move(problems))};
   };
   if (!submission->set) return finish("/material");
   const auto set = db::MeasurementStore(store).find(*submission->set, submission->version);
   if (!set) {
-    return Unexpected{invalid("the submission has problems",
+    return Unexpected{invalid("the submission",
                               {{"/measurement_set",
                                 no_such_set(*submission->set, submission->version).message,
                                 *submission->set,

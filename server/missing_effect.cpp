@@ -40,9 +40,7 @@ Refusal refusal(Refusal::Kind kind, std::string message) { return {kind, std::mo
 Answer<Finished> finished(const db::Store& store, std::int64_t id) {
   const auto record = store.calibration(id);
   const std::string name = "calibration " + std::to_string(id);
-  if (!record) {
-    return Unexpected{refusal(Refusal::Kind::not_found, "there is no " + name)};
-  }
+  if (!record) return Unexpected{not_found("calibration", id)};
   if (record->state != "done" || !record->fit) {
     return Unexpected{refusal(Refusal::Kind::wrong_state,
                               name + " is " + record->state + ": it has no fit to be judged")};
@@ -198,17 +196,13 @@ bool run_diagnosis(db::Store& store,
 
 Answer<std::string> diagnosis(const db::Store& store, std::int64_t id) {
   const auto record = store.diagnosis(id);
-  if (!record) {
-    return Unexpected{
-        refusal(Refusal::Kind::not_found, "there is no diagnosis " + std::to_string(id))};
-  }
+  if (!record) return Unexpected{not_found("diagnosis", id)};
   return print_diagnosis_record(*record);
 }
 
 Answer<std::string> diagnoses(const db::Store& store, std::int64_t calibration) {
   if (!store.calibration(calibration)) {
-    return Unexpected{refusal(Refusal::Kind::not_found,
-                              "there is no calibration " + std::to_string(calibration))};
+    return Unexpected{not_found("calibration", calibration)};
   }
   return print_diagnosis_records(store.diagnoses(calibration));
 }

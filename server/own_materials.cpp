@@ -62,8 +62,7 @@ Answer<std::string> put_material(db::Store& store,
   if (find_material(name) != nullptr) return Unexpected{published(name)};
   const auto document = parse_own_material(content);
   if (!document) {
-    return Unexpected{
-        Refusal{Refusal::Kind::invalid, "the material has problems", document.error()}};
+    return Unexpected{invalid("the material", document.error())};
   }
   db::MaterialStore materials(store);
   const auto before = materials.find(name);

@@ -20,15 +20,6 @@ namespace {
 
 constexpr std::int64_t second = 1'000'000;  // microseconds
 
-Refusal not_found(std::int64_t id) {
-  return {Refusal::Kind::not_found, "there is no schedule " + std::to_string(id), {}};
-}
-
-Refusal invalid(const char* what, Problems problems) {
-  std::string message = std::string(what) + " has " + counted(problems);
-  return {Refusal::Kind::invalid, std::move(message), std::move(problems)};
-}
-
 /// The schedule, and that the calibration to start from is one that can be.
 Answer<NightlySchedule> read(db::Store& store, std::string_view document) {
   if (auto labels = problems_of_schedule_labels(document); !labels.empty()) {
@@ -151,20 +142,20 @@ Answer<std::string> replace_schedule(db::Store& store,
   if (!read_one) return Unexpected{read_one.error()};
   ScheduleStore schedules(store);
   const auto before = schedules.schedule(id);
-  if (!before || before->removed_at) return Unexpected{not_found(id)};
+  if (!before || before->removed_at) return Unexpected{not_found("schedule", id)};
   if (same_times(*before, read_one->timetable)) keep_planned_night(store, *before, now);
   schedules.replace(id, read_one->name, print_schedule(*read_one), now);
   return schedule(store, id, now);
 }
 
 Answer<std::string> remove_schedule(db::Store& store, std::int64_t id, std::int64_t now) {
-  if (!ScheduleStore(store).remove(id, now)) return Unexpected{not_found(id)};
+  if (!ScheduleStore(store).remove(id, now)) return Unexpected{not_found("schedule", id)};
   return schedule(store, id, now);
 }
 
 Answer<std::string> schedule(db::Store& store, std::int64_t id, std::int64_t now) {
   const auto record = ScheduleStore(store).schedule(id);
-  if (!record) return Unexpected{not_found(id)};
+  if (!record) return Unexpected{not_found("schedule", id)};
   return print_standing(standing(store, *record, now), true);
 }
 
@@ -181,13 +172,13 @@ Answer<Page> nights(db::Store& store,
                     int limit,
                     std::optional<std::int64_t> before) {
   const ScheduleStore schedules(store);
-  if (!schedules.schedule(id)) return Unexpected{not_found(id)};
+  if (!schedules.schedule(id)) return Unexpected{not_found("schedule", id)};
   return print_nights(schedules.nights(id, limit, before), limit);
 }
 
 Answer<std::string> promotions(db::Store& store, std::int64_t id) {
   const ScheduleStore schedules(store);
-  if (!schedules.schedule(id)) return Unexpected{not_found(id)};
+  if (!schedules.schedule(id)) return Unexpected{not_found("schedule", id)};
   return print_promotions(schedules.promotions(id));
 }
 
@@ -196,7 +187,7 @@ Answer<std::string> promote(db::Store& store,
                             std::string_view document,
                             std::int64_t now) {
   ScheduleStore schedules(store);
-  if (!schedules.schedule(id)) return Unexpected{not_found(id)};
+  if (!schedules.schedule(id)) return Unexpected{not_found("schedule", id)};
   const auto calibration = parse_promotion_request(document);
   if (!calibration) return Unexpected{invalid("the promotion", calibration.error())};
   const std::string name = "calibration " + std::to_string(*calibration);

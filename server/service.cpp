@@ -38,15 +38,17 @@ using engine::Unexpected;
 Service::Service(const ServiceOptions& options) : state_(std::make_unique<State>(options)) {}
 Service::~Service() = default;
 
+Refusal invalid(std::string_view what, Problems problems) {
+  std::string message = std::string(what) + " has " + counted(problems);
+  return {Refusal::Kind::invalid, std::move(message), std::move(problems)};
+}
+
+Refusal not_found(std::string_view what, std::int64_t id) {
+  return {
+      Refusal::Kind::not_found, "there is no " + std::string(what) + " " + std::to_string(id), {}};
+}
+
 namespace {
-
-Refusal not_found(std::int64_t id) {
-  return {Refusal::Kind::not_found, "there is no calibration " + std::to_string(id), {}};
-}
-
-Refusal invalid(const std::string& what, const Problems& problems) {
-  return {Refusal::Kind::invalid, what + " has " + counted(problems), problems};
-}
 
 /// A study with what it names in its place, and where that is from.
 struct Submitted {
@@ -150,7 +152,7 @@ Answer<std::string> Service::calibrate(std::string_view study,
 
 Answer<std::string> Service::calibration(std::int64_t id) const {
   const auto record = state_->store.calibration(id);
-  if (!record) return Unexpected{not_found(id)};
+  if (!record) return Unexpected{not_found("calibration", id)};
   const db::MeasurementStore measurements(state_->store);
   const db::SourceRecord source = measurements.source(id);
   return print_job(
@@ -164,7 +166,8 @@ Page Service::calibrations(int limit, std::optional<std::int64_t> before) const 
 Answer<Page> Service::evaluations(std::int64_t calibration,
                                   int limit,
                                   std::optional<std::int64_t> after) const {
-  if (!state_->store.calibration(calibration)) return Unexpected{not_found(calibration)};
+  if (!state_->store.calibration(calibration))
+    return Unexpected{not_found("calibration", calibration)};
   return print_used(state_->store.used(calibration, limit, after), limit);
 }
 
@@ -174,7 +177,7 @@ std::string Service::best_fits(const db::FitFilter& filter) const {
 
 Answer<std::string> Service::cancel(std::int64_t id) {
   const auto record = state_->store.calibration(id);
-  if (!record) return Unexpected{not_found(id)};
+  if (!record) return Unexpected{not_found("calibration", id)};
   const auto final = [&]() -> Answer<std::string> {
     return Unexpected{Refusal{Refusal::Kind::wrong_state,
                               "calibration " + std::to_string(id) + " has ended: it is " +
@@ -375,7 +378,7 @@ Answer<Page> Service::events(const std::optional<std::int64_t>& calibration,
                              int limit,
                              std::int64_t after) const {
   if (calibration && !state_->store.calibration(*calibration)) {
-    return Unexpected{not_found(*calibration)};
+    return Unexpected{not_found("calibration", *calibration)};
   }
   return print_events(db::EventStore(state_->store).events(calibration, after, limit), limit);
 }
@@ -384,7 +387,7 @@ Answer<std::function<std::string()>> Service::event_stream(
     const std::optional<std::int64_t>& calibration,
     const std::optional<std::int64_t>& after) const {
   if (calibration && !state_->store.calibration(*calibration)) {
-    return Unexpected{not_found(*calibration)};
+    return Unexpected{not_found("calibration", *calibration)};
   }
   const db::EventStore store(state_->store);
   const std::int64_t start = after ? *after : store.newest();

@@ -35,6 +35,11 @@ struct Refusal {
   Problems problems;  ///< of an invalid request: all of them
 };
 
+/// `what` has problems.
+Refusal invalid(std::string_view what, Problems problems);
+/// There is no `what` of that number.
+Refusal not_found(std::string_view what, std::int64_t id);
+
 template <class T>
 using Answer = engine::Result<T, Refusal>;
 

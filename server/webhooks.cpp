@@ -23,11 +23,7 @@ Answer<WebhookContent> read(std::string_view content,
                             const std::vector<std::string>& private_hosts) {
   auto read_one = parse_webhook(content, private_hosts);
   if (read_one) return *std::move(read_one);
-  return Unexpected{Refusal{Refusal::Kind::invalid, "the webhook has problems", read_one.error()}};
-}
-
-Refusal not_found(std::int64_t id) {
-  return {Refusal::Kind::not_found, "there is no webhook " + std::to_string(id), {}};
+  return Unexpected{invalid("the webhook", read_one.error())};
 }
 
 }  // namespace
@@ -56,7 +52,7 @@ Answer<std::string> replace_webhook(db::Store& store,
   if (wanted->new_secret) secret = new_secret();
   WebhookStore webhooks(store);
   if (!webhooks.replace(id, wanted->url, print_kinds(wanted->kinds), secret, now + day, now)) {
-    return Unexpected{not_found(id)};
+    return Unexpected{not_found("webhook", id)};
   }
   return print_webhook(*webhooks.webhook(id), secret);
 }
@@ -69,7 +65,7 @@ Answer<std::string> remove_webhook(db::Store& store, std::int64_t id) {
 
 Answer<std::string> webhook(const db::Store& store, std::int64_t id) {
   const auto record = WebhookStore(store).webhook(id);
-  if (!record) return Unexpected{not_found(id)};
+  if (!record) return Unexpected{not_found("webhook", id)};
   return print_webhook(*record);
 }
 

@@ -130,7 +130,7 @@ double Models::held_out_p(const Model& model) const {
   std::vector<double> gaps;
   for (std::size_t j = 0; j < measurements.size(); ++j) {
     const auto index = static_cast<Index>(j);
-    if (measurements[j].role != Role::held_out || !model.emulator.knows(index)) continue;
+    if (!held_out(measurements[j]) || !model.emulator.knows(index)) continue;
     held.push_back(index);
     gaps.push_back(measurements[j].value - question_.offset(index) - predicted(index));
   }

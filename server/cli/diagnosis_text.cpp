@@ -29,7 +29,7 @@ std::string label_of(std::span<const Measurement> measurements, const Measuremen
   std::string label = measurement_label(measurement);
   const std::string settings = distinction_label(measurements, measurement);
   if (!settings.empty()) label += " (" + settings + ")";
-  if (measurement.role == calibrator::Role::held_out) label += " (held out)";
+  if (held_out(measurement)) label += " (held out)";
   return label;
 }
 

@@ -31,7 +31,7 @@ std::string measurement_table(const Calibration& calibration, const Fit& fit) {
     std::string label = line_label(line.measured);
     const std::string settings = distinction_label(calibration.measurements, measurement);
     if (!settings.empty() && !line.is_curve()) label += " (" + settings + ")";
-    if (measurement.role == calibrator::Role::held_out) label += " (held out)";
+    if (held_out(measurement)) label += " (held out)";
     table.row(
         {label, measured_text(line), predicted_text(line), difference_text(line), z_text(line)});
   }

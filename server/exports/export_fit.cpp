@@ -22,7 +22,7 @@ Answer<std::string> export_fit(const db::Store& store, std::int64_t id, std::str
   }
   const std::string name = "calibration " + std::to_string(id);
   const auto record = store.calibration(id);
-  if (!record) return Unexpected{Refusal{Refusal::Kind::not_found, "there is no " + name, {}}};
+  if (!record) return Unexpected{not_found("calibration", id)};
   auto found = published(store, id);
   if (!found || found->fit.best.empty()) {
     return Unexpected{Refusal{Refusal::Kind::wrong_state,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -38,23 +37,10 @@ Enumerator value_of(const Names& names, const Json& name) {
   return static_cast<Enumerator>(found - names.begin());
 }
 
-double number(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
-
-/// SI values of the measurements, in the authors' units.
-Json print_values(const Calibration& calibration, const std::vector<double>& values) {
-  Json result = Json::array();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    result.push_back(in_unit(values[i], calibration.measurements.at(i).unit));
-  }
-  return result;
-}
-
 std::vector<double> read_values(const Calibration& calibration, const Json& json) {
   std::vector<double> values;
   for (const Json& value : json) {
-    values.push_back(number(value) * calibration.measurements.at(values.size()).unit.factor);
+    values.push_back(number_or_nan(value) * calibration.measurements.at(values.size()).unit.factor);
   }
   return values;
 }
@@ -67,7 +53,7 @@ Json print_numbers(const std::vector<double>& values) {
 
 std::vector<double> read_numbers(const Json& json) {
   std::vector<double> values;
-  for (const Json& value : json) values.push_back(number(value));
+  for (const Json& value : json) values.push_back(number_or_nan(value));
   return values;
 }
 
@@ -198,19 +184,19 @@ EffectFinding read_effect(const Calibration& calibration, const Json& json) {
     const engine::ParameterInfo* info = engine::find_parameter(named->key.field);
     finding.suspect.levers.push_back({.key = named->key,
                                       .null_value = info != nullptr ? info->field->null_value : 0.0,
-                                      .strong = number(entry.at("value")) * unit->factor,
+                                      .strong = number_or_nan(entry.at("value")) * unit->factor,
                                       .lower = info != nullptr ? info->field->lower : 0.0,
                                       .upper = info != nullptr ? info->field->upper : 1.0});
   }
   finding.status =
       value_of<calibrator::EffectStatus>(calibrator::effect_status_names, json.at("status"));
-  finding.score = number(json.at("score"));
-  finding.p = number(json.at("p"));
-  finding.strength = number(json.at("strength"));
-  finding.strength_upper = number(json.at("strength_upper"));
-  finding.detectable = number(json.at("detectable"));
-  finding.absorbed = number(json.at("absorbed"));
-  finding.probe_noise = number(json.at("probe_noise"));
+  finding.score = number_or_nan(json.at("score"));
+  finding.p = number_or_nan(json.at("p"));
+  finding.strength = number_or_nan(json.at("strength"));
+  finding.strength_upper = number_or_nan(json.at("strength_upper"));
+  finding.detectable = number_or_nan(json.at("detectable"));
+  finding.absorbed = number_or_nan(json.at("absorbed"));
+  finding.probe_noise = number_or_nan(json.at("probe_noise"));
   finding.change = read_values(calibration, json.at("change"));
   finding.trace = read_numbers(json.at("trace"));
   return finding;
@@ -219,32 +205,32 @@ EffectFinding read_effect(const Calibration& calibration, const Json& json) {
 Excuse read_excuse(const Json& json) {
   return {json.at("observable").get<std::string>(),
           json.at("setting").get<std::string>(),
-          number(json.at("score")),
-          number(json.at("p")),
-          number(json.at("size")),
-          number(json.at("deviance")),
-          number(json.at("misfit")),
-          number(json.at("misfit_p"))};
+          number_or_nan(json.at("score")),
+          number_or_nan(json.at("p")),
+          number_or_nan(json.at("size")),
+          number_or_nan(json.at("deviance")),
+          number_or_nan(json.at("misfit")),
+          number_or_nan(json.at("misfit_p"))};
 }
 
 Refit read_refit(const Calibration& calibration, const Diagnosis& diagnosis, const Json& json) {
   Refit refit;
   for (const Json& entry : json.at("effects")) {
     refit.effects.push_back(effect_named(diagnosis, entry.at("name")));
-    refit.strengths.push_back(number(entry.at("strength")));
+    refit.strengths.push_back(number_or_nan(entry.at("strength")));
     const Json& interval = entry.at("interval");
     if (!interval.is_array()) continue;
-    refit.strength_lower.push_back(number(interval.at(0)));
-    refit.strength_upper.push_back(number(interval.at(1)));
+    refit.strength_lower.push_back(number_or_nan(interval.at(0)));
+    refit.strength_upper.push_back(number_or_nan(interval.at(1)));
   }
-  refit.gain = number(json.at("gain"));
-  refit.deviance = number(json.at("deviance"));
-  refit.misfit = number(json.at("misfit"));
-  refit.freedom = number(json.at("freedom"));
-  refit.p = number(json.at("p"));
+  refit.gain = number_or_nan(json.at("gain"));
+  refit.deviance = number_or_nan(json.at("deviance"));
+  refit.misfit = number_or_nan(json.at("misfit"));
+  refit.freedom = number_or_nan(json.at("freedom"));
+  refit.p = number_or_nan(json.at("p"));
   refit.at_bound = json.at("at_bound").get<bool>();
-  refit.fitted_z = number(json.at("fitted_z"));
-  refit.held_out_z = number(json.at("held_out_z"));
+  refit.fitted_z = number_or_nan(json.at("fitted_z"));
+  refit.held_out_z = number_or_nan(json.at("held_out_z"));
   refit.predicted = read_values(calibration, json.at("predicted"));
   refit.parameters = read_parameter_set(json.at("parameters"));
   return refit;
@@ -256,17 +242,17 @@ Diagnosis read_diagnosis(const Calibration& calibration, const Json& json) {
                                                              json.at("verdict"));
   diagnosis.grade = value_of<calibrator::Grade>(calibrator::grade_names, json.at("grade"));
   diagnosis.sentence = json.at("text").get<std::string>();
-  diagnosis.p_named = number(json.at("p").at("named"));
-  diagnosis.p_unnamed = number(json.at("p").at("unnamed"));
-  diagnosis.p_misfit = number(json.at("p").at("misfit"));
+  diagnosis.p_named = number_or_nan(json.at("p").at("named"));
+  diagnosis.p_unnamed = number_or_nan(json.at("p").at("unnamed"));
+  diagnosis.p_misfit = number_or_nan(json.at("p").at("misfit"));
   diagnosis.p_held_out = json.at("p").value("held_out", 1.0);  // older ones have none
-  diagnosis.misfit = number(json.at("misfit"));
-  diagnosis.freedom = number(json.at("freedom"));
-  diagnosis.fitted_z = number(json.at("fitted_z"));
-  diagnosis.held_out_z = number(json.at("held_out_z"));
+  diagnosis.misfit = number_or_nan(json.at("misfit"));
+  diagnosis.freedom = number_or_nan(json.at("freedom"));
+  diagnosis.fitted_z = number_or_nan(json.at("fitted_z"));
+  diagnosis.held_out_z = number_or_nan(json.at("held_out_z"));
   diagnosis.parameters = read_parameter_set(json.at("parameters"));
   for (std::size_t j = 0; j < calibration.measurements.size(); ++j) {
-    diagnosis.predicted.push_back(number(json.at("measurements").at(j).at("predicted")) *
+    diagnosis.predicted.push_back(number_or_nan(json.at("measurements").at(j).at("predicted")) *
                                   calibration.measurements[j].unit.factor);
   }
   for (const Json& entry : json.at("effects")) {

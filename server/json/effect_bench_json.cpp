@@ -1,7 +1,6 @@
 #include "server/json/effect_bench_json.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "engine/evaluate.hpp"
@@ -16,18 +15,14 @@ namespace repose::server {
 
 namespace {
 
-double number(const Json& json) {
-  return json.is_number() ? json.get<double>() : std::numeric_limits<double>::quiet_NaN();
-}
-
 EffectChange read_change(const Json& json) {
   const auto unit = engine::unit::find(json.at("unit").get<std::string>()).value();
   return {json.at("experiment").get<std::string>(),
           json.at("observable").get<std::string>(),
           unit,
-          number(json.at("without")) * unit.factor,
-          number(json.at("with")) * unit.factor,
-          number(json.at("standard_error")) * unit.factor,
+          number_or_nan(json.at("without")) * unit.factor,
+          number_or_nan(json.at("with")) * unit.factor,
+          number_or_nan(json.at("standard_error")) * unit.factor,
           json.at("failure").get<std::string>()};
 }
 
@@ -40,7 +35,7 @@ EffectBench read_effect(const Json& json) {
     const auto named = read_key(members);
     const auto unit = engine::unit::find(entry.at("unit").get<std::string>());
     if (!named || !unit) continue;
-    bench.parameters.emplace_back(named->key, number(entry.at("value")) * unit->factor);
+    bench.parameters.emplace_back(named->key, number_or_nan(entry.at("value")) * unit->factor);
   }
   for (const Json& change : json.at("changes")) bench.changes.push_back(read_change(change));
   return bench;

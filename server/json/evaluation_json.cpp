@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -58,11 +57,6 @@ Json print_effort(const Effort& effort) {
   return result;
 }
 
-/// A number, NaN where there is null.
-double number_of(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
-
 /// A number that counts something.
 std::uint64_t count_of(const Json& json) {
   if (!json.is_number_unsigned()) throw std::invalid_argument("a count is a whole number from 0");
@@ -77,7 +71,7 @@ Effort read_effort(const Json& json) {
     if (const auto* whole = std::get_if<0>(&field.member)) {
       effort.** whole = count_of(*found);
     } else {
-      effort.*std::get<1>(field.member) = number_of(*found);
+      effort.*std::get<1>(field.member) = number_or_nan(*found);
     }
   }
   return effort;
@@ -141,7 +135,7 @@ Failure read_failure(const Json& json) {
   if (found == engine::failure_kind_names.end()) throw std::invalid_argument("unknown failure");
   return {static_cast<engine::FailureKind>(found - engine::failure_kind_names.begin()),
           json.at("message").get<std::string>(),
-          number_of(json.at("simulated_seconds"))};
+          number_or_nan(json.at("simulated_seconds"))};
 }
 
 engine::Outcome read_outcome(const Json& json) {
@@ -150,7 +144,7 @@ engine::Outcome read_outcome(const Json& json) {
   std::vector<Observation> observations;
   for (const Json& entry : json.at("observations")) {
     observations.push_back({entry.at("name").get<std::string>(),
-                            number_of(entry.at("value")),
+                            number_or_nan(entry.at("value")),
                             entry.value("unread", std::string())});
   }
   return observations;

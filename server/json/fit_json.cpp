@@ -72,15 +72,6 @@ Json print_measurements(const Calibration& calibration, const Fit& fit) {
   return result;
 }
 
-/// Values of the measurements in the authors' units.
-Json print_values(const Calibration& calibration, const std::vector<double>& values) {
-  Json result = Json::array();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    result.push_back(in_unit(values[i], calibration.measurements.at(i).unit));
-  }
-  return result;
-}
-
 /// One offset per measurement; empty where the fidelities do not differ.
 Json print_offset(const Calibration& calibration, const Fit& fit) {
   Json result = Json::array();
@@ -119,12 +110,12 @@ std::vector<calibrator::FittedParameter> read_parameters(const Calibration& cali
     const FreeParameter& free = calibration.free.at(result.size());
     const double factor = free.unit.factor;
     result.push_back({free.key,
-                      read_number(entry.at("value")) * factor,
-                      read_number(entry.at("interval").at(0)) * factor,
-                      read_number(entry.at("interval").at(1)) * factor,
+                      number_or_nan(entry.at("value")) * factor,
+                      number_or_nan(entry.at("interval").at(0)) * factor,
+                      number_or_nan(entry.at("interval").at(1)) * factor,
                       entry.at("at_bound").at("lower").get<bool>(),
                       entry.at("at_bound").at("upper").get<bool>(),
-                      read_number(entry.at("learnt")),
+                      number_or_nan(entry.at("learnt")),
                       entry.at("determined").get<bool>()});
   }
   return result;
@@ -137,13 +128,13 @@ std::vector<calibrator::Prediction> read_predictions(const Calibration& calibrat
     const std::size_t index = result.size();
     const double factor = calibration.measurements.at(index).unit.factor;
     result.push_back({index,
-                      read_number(row.at("predicted")) * factor,
-                      read_number(row.at("predicted_error")) * factor,
+                      number_or_nan(row.at("predicted")) * factor,
+                      number_or_nan(row.at("predicted_error")) * factor,
                       row.at("replicates").get<int>(),
-                      read_number(row.at("scatter")) * factor,
-                      read_number(row.at("emulated")) * factor,
-                      read_number(row.at("emulated_deviation")) * factor,
-                      read_number(row.at("z"))});
+                      number_or_nan(row.at("scatter")) * factor,
+                      number_or_nan(row.at("emulated")) * factor,
+                      number_or_nan(row.at("emulated_deviation")) * factor,
+                      number_or_nan(row.at("z"))});
   }
   return result;
 }
@@ -167,16 +158,16 @@ std::vector<HistoryPoint> read_history(const Calibration& calibration, const Jso
     engine::ParameterSet free;
     for (std::size_t k = 0; k < calibration.free.size(); ++k) {
       const FreeParameter& parameter = calibration.free[k];
-      free.set(parameter.key, read_number(entry.at("parameters").at(k)) * parameter.unit.factor);
+      free.set(parameter.key, number_or_nan(entry.at("parameters").at(k)) * parameter.unit.factor);
     }
     point.parameters = space.at(space.coordinates(free));
     for (const auto& [key, value] : free) point.parameters.set(key, value);
     for (std::size_t i = 0; i < calibration.measurements.size(); ++i) {
-      point.values.push_back(read_number(entry.at("observed").at(i)) *
+      point.values.push_back(number_or_nan(entry.at("observed").at(i)) *
                              calibration.measurements[i].unit.factor);
     }
-    point.misfit = read_number(entry.at("misfit"));
-    point.best = read_number(entry.at("best"));
+    point.misfit = number_or_nan(entry.at("misfit"));
+    point.best = number_or_nan(entry.at("best"));
     result.push_back(std::move(point));
   }
   return result;
@@ -185,8 +176,8 @@ std::vector<HistoryPoint> read_history(const Calibration& calibration, const Jso
 void read_offset(const Calibration& calibration, const Json& json, Fit& fit) {
   for (std::size_t i = 0; i < json.size(); ++i) {
     const double factor = calibration.measurements.at(i).unit.factor;
-    fit.offset.push_back(read_number(json[i].at("value")) * factor);
-    fit.offset_error.push_back(read_number(json[i].at("standard_error")) * factor);
+    fit.offset.push_back(number_or_nan(json[i].at("value")) * factor);
+    fit.offset_error.push_back(number_or_nan(json[i].at("standard_error")) * factor);
   }
 }
 
@@ -205,7 +196,7 @@ Fit read_fit(const Calibration& calibration, const Json& json) {
   fit.next = read_next(calibration, json);
   fit.predictions = read_predictions(calibration, json.at("measurements"));
   read_offset(calibration, json.at("offset"), fit);
-  fit.misfit = read_number(json.at("misfit"));
+  fit.misfit = number_or_nan(json.at("misfit"));
   fit.evaluations = json.at("evaluations").get<int>();
   fit.failed = json.at("failed").get<int>();
   fit.stop = stop_named(json.at("stop").get<std::string>());

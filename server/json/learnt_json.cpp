@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -57,10 +56,6 @@ engine::Experiment read_experiment(const Json& entry) {
 
 }  // namespace
 
-double read_number(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
-
 Json print_directions(const Calibration& calibration, const std::vector<Direction>& directions) {
   Json result = Json::array();
   for (const Direction& direction : directions) {
@@ -86,13 +81,14 @@ std::vector<Direction> read_directions(const Json& fit) {
   for (const Json& entry : fit.at("directions")) {
     Direction direction;
     for (const Json& component : entry.at("components")) {
-      direction.components.push_back(read_number(component.at("weight")));
-      if (component.contains("power")) direction.powers.push_back(read_number(component["power"]));
+      direction.components.push_back(number_or_nan(component.at("weight")));
+      if (component.contains("power"))
+        direction.powers.push_back(number_or_nan(component["power"]));
     }
-    direction.posterior_to_prior = read_number(entry.at("posterior_to_prior"));
+    direction.posterior_to_prior = number_or_nan(entry.at("posterior_to_prior"));
     direction.learnt = entry.at("learnt").get<bool>();
     if (entry.contains("product_error"))
-      direction.product_error = read_number(entry["product_error"]);
+      direction.product_error = number_or_nan(entry["product_error"]);
     result.push_back(std::move(direction));
   }
   return result;
@@ -122,16 +118,16 @@ Posterior read_posterior(const Calibration& calibration, const Json& fit) {
   for (const Json& row : json.at("samples")) {
     std::vector<double>& sample = posterior.samples.emplace_back();
     for (std::size_t k = 0; k < calibration.free.size(); ++k) {
-      sample.push_back(read_number(row.at(k)) * calibration.free[k].unit.factor);
+      sample.push_back(number_or_nan(row.at(k)) * calibration.free[k].unit.factor);
     }
   }
   for (const Json& row : json.at("quantiles")) {
     const double factor = calibration.free.at(posterior.quantiles.size()).unit.factor;
     std::array<double, 3>& quantiles = posterior.quantiles.emplace_back();
-    for (std::size_t i = 0; i < 3; ++i) quantiles.at(i) = read_number(row.at(i)) * factor;
+    for (std::size_t i = 0; i < 3; ++i) quantiles.at(i) = number_or_nan(row.at(i)) * factor;
   }
-  posterior.r_hat = read_number(json.at("r_hat"));
-  posterior.effective_samples = read_number(json.at("effective_samples"));
+  posterior.r_hat = number_or_nan(json.at("r_hat"));
+  posterior.effective_samples = number_or_nan(json.at("effective_samples"));
   return posterior;
 }
 
@@ -162,16 +158,16 @@ std::vector<NextMeasurement> read_next(const Calibration& calibration, const Jso
     one.observable = entry.at("observable").get<std::string>();
     const double factor = observable_unit(calibration, one.experiment.name, one.observable).factor;
     one.again = entry.at("again").get<bool>();
-    one.predicted = read_number(entry.at("predicted")) * factor;
-    one.standard_error = read_number(entry.at("standard_error")) * factor;
-    one.gain = read_number(entry.at("gain"));
+    one.predicted = number_or_nan(entry.at("predicted")) * factor;
+    one.standard_error = number_or_nan(entry.at("standard_error")) * factor;
+    one.gain = number_or_nan(entry.at("gain"));
     const auto& free = calibration.free;
     const auto about = std::ranges::find_if(free, [&](const calibrator::FreeParameter& parameter) {
       return print_key(parameter.key) == entry.at("parameter");
     });
     if (about == free.end()) throw std::invalid_argument("an unknown parameter");
     one.parameter = static_cast<std::size_t>(about - free.begin());
-    one.learnt = read_number(entry.at("learnt"));
+    one.learnt = number_or_nan(entry.at("learnt"));
     result.push_back(std::move(one));
   }
   return result;

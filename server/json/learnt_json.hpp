@@ -25,7 +25,4 @@ Json print_next(const calibrator::Calibration& calibration,
 std::vector<calibrator::NextMeasurement> read_next(const calibrator::Calibration& calibration,
                                                    const Json& fit);
 
-/// Null is not a number.
-double read_number(const Json& json);
-
 }  // namespace repose::server

@@ -14,23 +14,19 @@ std::optional<std::int64_t> whole(const Json& json) {
   return json.is_number_integer() ? std::optional(json.get<std::int64_t>()) : std::nullopt;
 }
 
-std::string text_of(const Json& json) {
-  return json.is_string() ? json.get<std::string>() : std::string();
-}
-
 LineageItem read_item(const Json& json) {
   LineageItem item;
   item.calibration = json.at("calibration").get<std::int64_t>();
   item.parent = whole(json.at("parent"));
-  item.effect = text_of(json.at("effect"));
-  item.name = text_of(json.at("name"));
-  item.state = text_of(json.at("state"));
+  item.effect = text_or_empty(json.at("effect"));
+  item.name = text_or_empty(json.at("name"));
+  item.state = text_or_empty(json.at("state"));
   if (json.at("quality").is_object()) item.quality = read_quality(json.at("quality"));
   const Json& verdict = json.at("verdict");
   if (!verdict.is_object()) return item;
   item.diagnosis = whole(verdict.at("diagnosis"));
-  item.verdict = text_of(verdict.at("verdict"));
-  item.grade = text_of(verdict.at("grade"));
+  item.verdict = text_or_empty(verdict.at("verdict"));
+  item.grade = text_or_empty(verdict.at("grade"));
   return item;
 }
 

@@ -10,33 +10,26 @@ namespace repose::server {
 
 namespace {
 
-double number(const Json& json) {
-  return json.is_number() ? json.get<double>() : std::numeric_limits<double>::quiet_NaN();
-}
-
-std::string text_of(const Json& json) {
-  return json.is_string() ? json.get<std::string>() : std::string();
-}
-
 ComparisonRow read_row(const Json& json, std::size_t measurement) {
   const Json& errors = json.at("errors");
   return {measurement,
-          number(json.at("measured")),
-          number(json.at("predicted")),
-          number(json.at("difference")),
-          number(errors.at("measurement")),
-          number(errors.at("tolerance")),
-          number(errors.at("simulation")),
-          number(json.at("z")),
-          json.contains("z_before") ? number(json.at("z_before"))
+          number_or_nan(json.at("measured")),
+          number_or_nan(json.at("predicted")),
+          number_or_nan(json.at("difference")),
+          number_or_nan(errors.at("measurement")),
+          number_or_nan(errors.at("tolerance")),
+          number_or_nan(errors.at("simulation")),
+          number_or_nan(json.at("z")),
+          json.contains("z_before") ? number_or_nan(json.at("z_before"))
                                     : std::numeric_limits<double>::quiet_NaN()};
 }
 
 std::string trend_text(const Json& json) {
-  const double slope = number(json.at("slope")), z = number(json.at("z"));
-  return text_of(json.at("observable")) + " changes with " + text_of(json.at("setting")) + ": z " +
-         (slope < 0.0 ? "falls" : "rises") + " by " + calibrator::number(std::abs(slope), 2) +
-         " per factor e (" + calibrator::number(std::abs(z), 2) + " standard errors)";
+  const double slope = number_or_nan(json.at("slope")), z = number_or_nan(json.at("z"));
+  return text_or_empty(json.at("observable")) + " changes with " +
+         text_or_empty(json.at("setting")) + ": z " + (slope < 0.0 ? "falls" : "rises") + " by " +
+         calibrator::number(std::abs(slope), 2) + " per factor e (" +
+         calibrator::number(std::abs(z), 2) + " standard errors)";
 }
 
 Json head_of(const db::DiagnosisRecord& record) {
@@ -72,11 +65,11 @@ std::string print_diagnosis_records(const std::vector<db::DiagnosisRecord>& reco
 }
 
 FitQuality read_quality(const Json& json) {
-  return {number(json.at("misfit")),
-          number(json.at("freedom")),
-          number(json.at("p")),
-          number(json.at("fitted_z")),
-          number(json.at("held_out_z"))};
+  return {number_or_nan(json.at("misfit")),
+          number_or_nan(json.at("freedom")),
+          number_or_nan(json.at("p")),
+          number_or_nan(json.at("fitted_z")),
+          number_or_nan(json.at("held_out_z"))};
 }
 
 engine::Result<DiagnosisRecordDocument, std::string> parse_diagnosis_record(std::string_view text) {
@@ -86,8 +79,8 @@ engine::Result<DiagnosisRecordDocument, std::string> parse_diagnosis_record(std:
   DiagnosisRecordDocument record;
   record.id = json->value("id", std::int64_t{0});
   record.calibration = json->value("calibration", std::int64_t{0});
-  record.state = text_of(json->value("state", Json(nullptr)));
-  record.error = text_of(json->value("error", Json(nullptr)));
+  record.state = text_or_empty(json->value("state", Json(nullptr)));
+  record.error = text_or_empty(json->value("error", Json(nullptr)));
   const Json result = json->value("result", Json(nullptr));
   if (result.is_object()) record.result = to_text(result);
   return record;
@@ -107,7 +100,7 @@ engine::Result<ComparisonDocument, std::string> parse_comparison(std::string_vie
     document.sentences = json->at("text").get<std::vector<std::string>>();
     constexpr double remarkable = 2.0;
     for (const Json& trend : json->at("trends")) {
-      if (std::abs(number(trend.at("z"))) > remarkable) {
+      if (std::abs(number_or_nan(trend.at("z"))) > remarkable) {
         document.trends.push_back(trend_text(trend));
       }
     }

@@ -1,7 +1,6 @@
 #include "server/json/parameters_json.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -21,6 +20,14 @@ Unit unit_of(const Calibration& calibration, const engine::ParameterKey& key) {
   if (free != calibration.free.end()) return free->unit;
   const engine::ParameterInfo* info = engine::find_parameter(key.field);
   return info != nullptr ? info->field->unit : Unit{};
+}
+
+Json print_values(const Calibration& calibration, const std::vector<double>& values) {
+  Json result = Json::array();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    result.push_back(in_unit(values[i], calibration.measurements.at(i).unit));
+  }
+  return result;
 }
 
 Json print_parameter_set(const Calibration& calibration, const engine::ParameterSet& set) {
@@ -43,10 +50,7 @@ engine::ParameterSet read_parameter_set(const Json& json) {
     const auto named = read_key(members);
     const auto unit = engine::unit::find(entry.at("unit").get<std::string>());
     if (!named || !unit) throw std::invalid_argument("an unknown parameter or unit");
-    const Json& value = entry.at("value");
-    const double number =
-        value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
-    set.set(named->key, number * unit->factor);
+    set.set(named->key, number_or_nan(entry.at("value")) * unit->factor);
   }
   return set;
 }

@@ -1,4 +1,5 @@
-/// Complete parameter sets as JSON: [{"field", "between", "value", "unit"}, ...].
+/// Numbers of a calibration as JSON, in its author's units. A parameter set is
+/// [{"field", "between", "value", "unit"}, ...].
 #pragma once
 
 #include "calibrator/calibration.hpp"
@@ -8,6 +9,9 @@ namespace repose::server {
 
 /// The unit in which the author thinks of a parameter, the catalogue's where they named none.
 engine::Unit unit_of(const calibrator::Calibration& calibration, const engine::ParameterKey& key);
+
+/// SI values of the measurements, in their order.
+Json print_values(const calibrator::Calibration& calibration, const std::vector<double>& values);
 
 Json print_parameter_set(const calibrator::Calibration& calibration,
                          const engine::ParameterSet& set);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <limits>
 #include <set>
 #include <utility>
 #include <vector>
@@ -171,6 +172,14 @@ Page print_page(Json items, int limit, const Json& last) {
 }
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+double number_or_nan(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+std::string text_or_empty(const Json& json) {
+  return json.is_null() ? std::string() : json.get<std::string>();
+}
 
 std::string print_time(std::int64_t microseconds) {
   const std::time_t seconds = microseconds / 1'000'000;

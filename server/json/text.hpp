@@ -48,6 +48,10 @@ Page print_page(Json items, int limit, const Json& last);
 /// A number, null where it is not finite: JSON has no NaN.
 Json number_or_null(double value);
 
+// The way back: what a document of this program has in such a place.
+double number_or_nan(const Json& json);
+std::string text_or_empty(const Json& json);
+
 /// "2026-11-23T14:05:09.120000Z" from microseconds since 1970.
 std::string print_time(std::int64_t microseconds);
 

@@ -51,7 +51,7 @@ Contender contender(const Calibration& study, const Fit& predicting, const Publi
   const bool any = std::ranges::count(measurements, Role::held_out, &Measurement::role) > 0;
   for (const calibrator::Prediction& prediction : predicting.predictions) {
     const Measurement& measurement = measurements[prediction.measurement];
-    if ((measurement.role == Role::held_out) != any) continue;
+    if (held_out(measurement) != any) continue;
     result.held_out.push_back(
         {prediction.z, prediction.standard_error / calibrator::standard_uncertainty(measurement)});
   }

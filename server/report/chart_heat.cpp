@@ -13,10 +13,6 @@ using calibrator::Measurement;
 
 namespace {
 
-bool held_out(const Measurement& measurement) {
-  return measurement.role == calibrator::Role::held_out;
-}
-
 std::string signed_text(double z) { return (z > 0.0 ? "+" : "") + fixed_text(z, 1); }
 
 /// "none", then three depths of "low" and of "high".

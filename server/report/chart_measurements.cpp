@@ -24,10 +24,6 @@ double uncertainty(const Measurement& measurement) {
   return std::hypot(measurement.standard_error, measurement.allowance);
 }
 
-bool held_out(const Measurement& measurement) {
-  return measurement.role == calibrator::Role::held_out;
-}
-
 void draw_parity_row(Svg& svg,
                      double top,
                      const Measurement& measurement,

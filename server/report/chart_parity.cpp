@@ -103,7 +103,7 @@ std::string panel(const Lineage& lineage, const MeasurementGroup& group) {
   const auto draw = [&](std::size_t g, std::size_t m) {
     const auto* row = row_of(lineage[g], m);
     if (row == nullptr || !std::isfinite(row->predicted)) return;
-    const bool open = measurements[m].role == calibrator::Role::held_out;
+    const bool open = held_out(measurements[m]);
     svg.circle(x(measurements[m].value / unit.factor),
                y(row->predicted / unit.factor),
                g == 0 ? 4.5 : 5.5,

@@ -43,9 +43,7 @@ std::vector<TrendPoint> points_of(const Lineage& lineage,
   for (std::size_t m = 0; m < measurements.size(); ++m) {
     const Measurement& what = measurements[m];
     if (what.experiment.name + "." + what.observable != observable) continue;
-    TrendPoint point{calibrator::setting_of(what, setting) / factor,
-                     what.role == calibrator::Role::held_out,
-                     {}};
+    TrendPoint point{calibrator::setting_of(what, setting) / factor, held_out(what), {}};
     for (const Generation& generation : lineage) {
       const auto* row = row_of(generation, m);
       point.z.push_back(row == nullptr ? std::nan("") : row->z);

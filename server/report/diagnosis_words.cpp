@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/catalogue.hpp"
+#include "server/letters.hpp"
 #include "server/report/number_text.hpp"
 
 namespace repose::server {
@@ -20,11 +21,6 @@ std::string parameter_name(const engine::ParameterKey& key) {
   std::string name = key.field.substr(key.field.find('.') + 1);
   std::ranges::replace(name, '_', ' ');
   return name;
-}
-
-std::string lower_first(std::string text) {
-  if (!text.empty() && text[0] >= 'A' && text[0] <= 'Z') text[0] = static_cast<char>(text[0] + 32);
-  return text;
 }
 
 std::string percent(double share) { return fixed_text(100.0 * share, 0) + " %"; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/catalogue.hpp"
+#include "server/letters.hpp"
 #include "server/report/label.hpp"
 
 namespace repose::server {
@@ -11,11 +12,6 @@ using calibrator::Calibration;
 using calibrator::Measurement;
 
 namespace {
-
-std::string lower_first(std::string text) {
-  if (!text.empty() && text[0] >= 'A' && text[0] <= 'Z') text[0] = static_cast<char>(text[0] + 32);
-  return text;
-}
 
 template <class Naming>
 std::vector<MeasurementGroup> grouped(const Calibration& calibration, const Naming& name_of) {

@@ -73,7 +73,7 @@ std::string measurement_row(const FitLine& line) {
   const Measurement& measurement = line.measured.front();
   const engine::Unit& unit = measurement.unit;
   std::string note = line.is_curve() ? "" : settings_label(measurement.experiment);
-  if (measurement.role == calibrator::Role::held_out) {
+  if (held_out(measurement)) {
     note += note.empty() ? "held out" : ", held out";
   }
   std::string text = "<tr><td>" + escaped(line_label(line.measured));
