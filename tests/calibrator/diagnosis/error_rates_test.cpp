@@ -4,6 +4,7 @@
 ///   REPOSE_ACCEPTANCE=full build/calibrator_tests "[acceptance]"    the table in full
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,20 +57,29 @@ struct Single {
   }
 };
 
-/// One hidden effect each, all effects in turn, strengths from 0.3 to 1.
+/// Adds a problem of one hidden effect, with its diagnosis, where its lambda is in that range. All
+/// effects come in turn, with strengths from 0.3 to 1.
+void add_single(std::vector<Single>& cases, std::uint64_t seed, double least, double most) {
+  const std::string effect(stand_in::effects[seed % stand_in::effects.size()]);
+  engine::Random random(seed, engine::Purpose::design, 7);
+  double strength = random.uniform(0.3, 1.0);
+  if (effect == "wall" && random.uniform() < 0.5) strength = -strength;
+  const auto problem = stand_in::make_problem(seed, {{effect, strength}});
+  const double lambda = stand_in::noncentrality(problem);
+  if (lambda < least || lambda >= most) return;
+  Single single{effect, lambda, {}, stand_in::diagnose(problem)};
+  single.raw = stand_in::class_of(stand_in::nearest_raw(problem, single.diagnosis));
+  cases.push_back(std::move(single));
+}
+
+const auto all_seeds = static_cast<std::uint64_t>(cases_of(520, 52));
+constexpr double weak = 10.0, strong = 20.0;
+
 const std::vector<Single>& singles() {
   static const std::vector<Single> all = [] {
     std::vector<Single> cases;
-    const auto count = static_cast<std::uint64_t>(cases_of(520, 52));
-    for (std::uint64_t seed = 1; seed <= count; ++seed) {
-      const std::string effect(stand_in::effects[seed % stand_in::effects.size()]);
-      engine::Random random(seed, engine::Purpose::design, 7);
-      double strength = random.uniform(0.3, 1.0);
-      if (effect == "wall" && random.uniform() < 0.5) strength = -strength;
-      const auto problem = stand_in::make_problem(seed, {{effect, strength}});
-      Single single{effect, stand_in::noncentrality(problem), {}, stand_in::diagnose(problem)};
-      single.raw = stand_in::class_of(stand_in::nearest_raw(problem, single.diagnosis));
-      cases.push_back(std::move(single));
+    for (std::uint64_t seed = 1; seed <= all_seeds; ++seed) {
+      add_single(cases, seed, 0.0, std::numeric_limits<double>::infinity());
     }
     return cases;
   }();
@@ -142,37 +152,50 @@ TEST_CASE("row 3: data of a code 2 % apart, still five, but not without the tole
   CHECK(5 * untold.all.hits > cases);
 }
 
-TEST_CASE("rows 4 and 5: one hidden effect is found and named where the data can show it",
+TEST_CASE("row 4: one hidden effect is found and named where the data can show it",
           "[calibrator][slow][acceptance]") {
-  Count found, right, plausible, raw, middle_found, middle_right;
+  Count found, right, plausible, raw;
   std::string missed;
   for (const Single& single : singles()) {
-    if (single.lambda >= 20.0) {
-      found.add(single.found());
-      right.add(single.right());
-      plausible.add(stand_in::open_classes(single.diagnosis).contains(single.truth()));
-      raw.add(single.raw == single.truth());
-      if (!single.right()) {
-        missed += " " + single.hidden + " (lambda " + std::to_string(std::lround(single.lambda)) +
-                  (single.found() ? ") as " + stand_in::front_class(single.diagnosis)
-                                  : std::string(") unseen")) +
-                  ";";
-      }
-    } else if (single.lambda >= 10.0) {
-      middle_found.add(single.found());
-      if (single.found()) middle_right.add(single.right());
+    if (single.lambda < strong) continue;
+    found.add(single.found());
+    right.add(single.right());
+    plausible.add(stand_in::open_classes(single.diagnosis).contains(single.truth()));
+    raw.add(single.raw == single.truth());
+    if (!single.right()) {
+      missed += " " + single.hidden + " (lambda " + std::to_string(std::lround(single.lambda)) +
+                (single.found() ? ") as " + stand_in::front_class(single.diagnosis)
+                                : std::string(") unseen")) +
+                ";";
     }
   }
-  WARN("lambda >= 20: found " << found << ", right " << right << ", plausible " << plausible
-                              << "; without projection right " << raw << "; lambda 10 to 20: found "
-                              << middle_found << ", right of these " << middle_right
-                              << "; not right:" << missed);
+  WARN("found " << found << ", right " << right << ", plausible " << plausible
+                << "; without projection right " << raw << "; not right:" << missed);
   CHECK(at_least(found, 0.95));
   CHECK(at_least(right, 0.93));
   CHECK(at_least(plausible, 0.97));
   CHECK(raw.share() < 0.93);
-  CHECK(at_least(middle_found, 0.80));
-  CHECK(at_least(middle_right, 0.80));
+}
+
+TEST_CASE("row 5: one that the data can just show is found, and then named",
+          "[calibrator][slow][acceptance]") {
+  // An eighth of all cases are such: too few for a rate, so that more are looked for.
+  std::vector<Single> more;
+  const auto last = static_cast<std::uint64_t>(cases_of(2600, 52));
+  for (std::uint64_t seed = all_seeds + 1; seed <= last; ++seed) {
+    add_single(more, seed, weak, strong);
+  }
+  Count found, right;
+  for (const std::vector<Single>* cases : {&singles(), &std::as_const(more)}) {
+    for (const Single& single : *cases) {
+      if (single.lambda < weak || single.lambda >= strong) continue;
+      found.add(single.found());
+      if (single.found()) right.add(single.right());
+    }
+  }
+  WARN("found " << found << ", right of these " << right);
+  CHECK(at_least(found, 0.80));
+  CHECK(at_least(right, 0.80));
 }
 
 TEST_CASE("row 6: an effect too weak for the data is not named wrongly",
