@@ -21,12 +21,29 @@ std::string_view owner_of(const ParameterKey& key) {
   return std::string_view(key.field).substr(0, key.field.find('.'));
 }
 
+/// Whether no strength of the effect moves the field: it is data, as the moisture at which a model's
+/// friction is meant.
+bool is_data(const engine::FieldInfo& field, double strong) { return strong == field.null_value; }
+
+bool is_data(const ParameterKey& key, const engine::GrainScale& grains) {
+  const EffectInfo* effect = engine::find_effect(owner_of(key));
+  if (effect == nullptr || effect->strong == nullptr) return false;
+  const std::vector<double> strong = effect->strong(grains);
+  for (std::size_t f = 0; f < effect->fields.size(); ++f) {
+    const engine::FieldInfo& field = effect->fields[f];
+    if (key.field.substr(key.field.find('.') + 1) == field.name) return is_data(field, strong[f]);
+  }
+  return false;
+}
+
 /// Effects that the model has: a parameter that is free, tied, or fixed off its null.
-std::set<std::string_view> effects_in_use(const Calibration& calibration) {
+std::set<std::string_view> effects_in_use(const Calibration& calibration,
+                                          const engine::GrainScale& grains) {
   std::set<std::string_view> names;
   for (const auto& [key, value] : calibration.fixed) {
     const engine::ParameterInfo* info = engine::find_parameter(key.field);
-    if (info != nullptr && value != info->field->null_value) names.insert(owner_of(key));
+    const bool on = info != nullptr && value != info->field->null_value;
+    if (on && !is_data(key, grains)) names.insert(owner_of(key));
   }
   for (const FreeParameter& free : calibration.free) names.insert(owner_of(free.key));
   for (const Tie& tie : calibration.tied) names.insert(owner_of(tie.key));
@@ -55,19 +72,26 @@ std::vector<std::vector<MaterialId>> places_of(engine::Scope scope) {
   return {{MaterialId::grain, MaterialId::grain}, {MaterialId::grain, MaterialId::wall}};
 }
 
-Suspect suspect_of(const EffectInfo& effect, const engine::GrainScale& grains) {
+/// `stated`: what the study fixes; data stated there are kept.
+Suspect suspect_of(const EffectInfo& effect,
+                   const ParameterSet& stated,
+                   const engine::GrainScale& grains) {
   Suspect suspect{std::string(effect.text.name), std::string(effect.text.title), {}};
   const std::vector<double> strong = effect.strong(grains);
   for (std::size_t f = 0; f < effect.fields.size(); ++f) {
     const engine::FieldInfo& field = effect.fields[f];
+    const bool data = is_data(field, strong[f]);
+    // A field that may lie on either side of its null may be missing on either.
+    if (!data && field.lower < field.null_value) suspect.two_sided = true;
     for (const auto& between : places_of(effect.scope)) {
-      suspect.levers.push_back(
-          {.key = engine::make_key(suspect.name + "." + std::string(field.name), between),
-           .null_value = field.null_value,
-           .strong = strong[f],
-           .lower = field.lower,
-           .upper = field.upper,
-           .whole = field.whole});
+      const auto key = engine::make_key(suspect.name + "." + std::string(field.name), between);
+      if (data && stated.get(key)) continue;
+      suspect.levers.push_back({.key = key,
+                                .null_value = field.null_value,
+                                .strong = strong[f],
+                                .lower = field.lower,
+                                .upper = field.upper,
+                                .whole = field.whole});
     }
   }
   return suspect;
@@ -135,7 +159,9 @@ void extend(const Suspect& suspect, const ParameterSet& best, Calibration& calib
     calibration.fixed.erase(lever.key);
     const engine::ParameterInfo* info = engine::find_parameter(lever.key.field);
     const engine::Unit unit = info != nullptr ? info->field->unit : engine::Unit{};
-    const double none = lever.relative ? lever.value(best, -1.0) : lever.null_value;
+    const double none = lever.relative      ? lever.value(best, -1.0)
+                        : suspect.two_sided ? lever.value(best, -largest_strength)
+                                            : lever.null_value;
     const double most = lever.value(best, lever.whole ? 1.0 : largest_strength);
     // What no strength moves belongs to the effect, but not to the search.
     if (none == most) {
@@ -155,7 +181,8 @@ void extend(const Suspect& suspect, const ParameterSet& best, Calibration& calib
 }
 
 std::vector<Suspect> suspects_of(const Calibration& calibration, const ParameterSet& best) {
-  const std::set<std::string_view> in_use = effects_in_use(calibration);
+  const engine::GrainScale grains = scale_of(best);
+  const std::set<std::string_view> in_use = effects_in_use(calibration, grains);
   std::set<std::string_view> families;
   for (const std::string_view name : in_use) {
     const EffectInfo* effect = engine::find_effect(name);
@@ -165,14 +192,13 @@ std::vector<Suspect> suspects_of(const Calibration& calibration, const Parameter
     return calibration.suspects.empty() ||
            std::ranges::find(calibration.suspects, name) != calibration.suspects.end();
   };
-  const engine::GrainScale grains = scale_of(best);
   std::vector<Suspect> suspects;
   for (const EffectInfo& effect : engine::effect_catalogue()) {
     if (effect.strong == nullptr || in_use.contains(effect.text.name) || !named(effect.text.name)) {
       continue;
     }
     if (families.contains(effect.text.family)) continue;  // the model has another form of it
-    suspects.push_back(suspect_of(effect, grains));
+    suspects.push_back(suspect_of(effect, calibration.fixed, grains));
     suspects.back().objection = lacks(calibration, effect);
   }
   if (named(own_wall_friction)) add_wall_friction(calibration, best, suspects);

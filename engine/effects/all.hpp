@@ -11,6 +11,7 @@
 #include "engine/effects/hysteresis.hpp"
 #include "engine/effects/jkr_adhesion.hpp"
 #include "engine/effects/log_normal_sizes.hpp"
+#include "engine/effects/moisture_density.hpp"
 #include "engine/effects/moisture_friction.hpp"
 #include "engine/effects/moisture_softening.hpp"
 #include "engine/effects/own_spin_rolling_resistance.hpp"
@@ -30,6 +31,7 @@ namespace repose::engine {
 
 using AllEffects = std::tuple<effects::MoistureSoftening,
                               effects::MoistureFriction,
+                              effects::MoistureDensity,
                               effects::SizeSpread,
                               effects::LogNormalSizes,
                               effects::TabulatedSizes,

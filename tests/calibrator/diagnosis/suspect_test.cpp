@@ -71,7 +71,7 @@ TEST_CASE("a wall friction of its own is freed from the tie", "[calibrator]") {
 }
 
 TEST_CASE("effects of moisture need measurements at more than one", "[calibrator]") {
-  for (const char* name : {"moisture_softening", "moisture_friction"}) {
+  for (const char* name : {"moisture_softening", "moisture_friction", "moisture_density"}) {
     const auto one = suspects_of(study({0.1, 0.1}), best(0.5, 0.5));
     REQUIRE(find(one, name) != nullptr);
     CHECK(find(one, name)->objection.find("same moisture") != std::string::npos);
@@ -90,4 +90,25 @@ TEST_CASE("what an effect leaves alone is kept out of the search", "[calibrator]
   const ParameterKey reference{"moisture_softening.reference", {MaterialId::grain}};
   CHECK(calibration.fixed.get(reference) == 0.12);
   CHECK(std::ranges::count(calibration.free, reference, &FreeParameter::key) == 0);
+}
+
+TEST_CASE("the moisture at which a model is meant is no effect, and is kept", "[calibrator]") {
+  Calibration calibration = study({0.1, 0.2});
+  const ParameterKey reference{"moisture_density.reference", {MaterialId::grain}};
+  calibration.fixed.set(reference, 0.07);
+  const auto suspects = suspects_of(calibration, best(0.5, 0.5));
+  REQUIRE(find(suspects, "moisture_density") != nullptr);
+  extend(*find(suspects, "moisture_density"), best(0.5, 0.5), calibration);
+  CHECK(calibration.fixed.get(reference) == 0.07);
+  CHECK(calibration.free.back().key.field == "moisture_density.rate");
+}
+
+TEST_CASE("an effect that may go either way is looked for on both sides", "[calibrator]") {
+  Calibration calibration = study({0.1, 0.2});
+  const auto suspects = suspects_of(calibration, best(0.5, 0.5));
+  CHECK(find(suspects, "moisture_density")->two_sided);
+  CHECK_FALSE(find(suspects, "moisture_friction")->two_sided);
+  extend(*find(suspects, "moisture_density"), best(0.5, 0.5), calibration);
+  CHECK(calibration.free.back().lower < 0.0);
+  CHECK(calibration.free.back().upper > 0.0);
 }

@@ -14,13 +14,13 @@ using namespace repose::engine;
 
 namespace {
 
-/// Every effect of the catalogue switched on at the middle of its bounds, on top of a frictional
-/// grain.
+/// Every effect of the catalogue switched on well within its bounds, on top of a frictional grain.
 ParameterSet with(const EffectInfo& effect, bool on) {
   ParameterSet set = repose::tests::parameters({.restitution = 0.7, .sliding = 0.4});
   for (const FieldInfo& field : effect.fields) {
     const std::string name = std::string(effect.text.name) + "." + std::string(field.name);
-    const double value = on ? 0.5 * (field.lower + field.upper) : field.null_value;
+    // Not at their middle, where a field that may go either way has its null.
+    const double value = on ? std::lerp(field.lower, field.upper, 0.4) : field.null_value;
     for (const MaterialId partner : {MaterialId::grain, MaterialId::wall}) {
       if (effect.scope == Scope::pair) set.set(make_key(name, {MaterialId::grain, partner}), value);
     }
@@ -44,14 +44,15 @@ ParameterSet without(const EffectInfo& effect) {
 
 /// A few dozen wet grains thrown together in a box that is being filled; returns their final state.
 std::vector<GrainRow> tumble(const ParameterSet& set, double time_step = 1e-5, int steps = 4000) {
-  World world(ContactModel(amended(set, {.moisture = 0.2})),
-              {.time_step = time_step, .period = {0.03, 0.03, 0}});
+  const ParameterSet wet = amended(set, {.moisture = 0.2});
+  const double density = wet.get({"material.density", {MaterialId::grain}}).value();
+  World world(ContactModel(wet), {.time_step = time_step, .period = {0.03, 0.03, 0}});
   world.start_shaking();
   world.change_surfaces().push_back(plane(0.0));
   world.change_surfaces().push_back(plane(0.03));
   Random random(3, Purpose::grain_position);
   for (int k = 0; k < 27; ++k) {
-    GrainRow grain = sphere(3e-3 * random.uniform(0.8, 1.0), 1228);
+    GrainRow grain = sphere(3e-3 * random.uniform(0.8, 1.0), density);
     grain.x = 0.0075 + 0.0075 * (k % 3);
     const int row = k / 3 % 3;
     const int layer = k / 9;
