@@ -230,10 +230,8 @@ void conclude(const Calibration& calibration,
               const std::string& sole_witness,
               Diagnosis& diagnosis) {
   for (const EffectFinding& finding : diagnosis.effects) {
-    if (!finding.suspect.objection.empty()) {
-      diagnosis.remarks.push_back(finding.suspect.name + ": " + finding.suspect.objection + ".");
-    } else if (finding.status == EffectStatus::supported && finding.probe_noise > 0.5) {
-      diagnosis.remarks.push_back(finding.suspect.name +
+    if (finding.status == EffectStatus::supported && finding.probe_noise > 0.5) {
+      diagnosis.remarks.push_back(finding.suspect.title +
                                   ": more than half of its trace is scatter of the probing runs.");
     }
   }

@@ -40,14 +40,17 @@ class Laboratory:
         told = "".join(f"-{name}={value:.6g}" for name, value in sorted(settings.items()))
         kept = self.keep / f"{experiment}{told}-{seed}.json"
         if not kept.exists():
-            known = {**compare.settings(self.repose, experiment, "draft"), **settings}
-            setup = apparatus.ALL[experiment](known, seed)
-            setup.physics = self.sealed["physics"]
-            with tempfile.TemporaryDirectory() as folder:
-                answer = compare.run_peer(self.code, self.program, setup, pathlib.Path(folder))
-            kept.write_text(json.dumps(answer.get(self.code, {})))
+            kept.write_text(json.dumps(self.answer(experiment, settings, seed)))
             print(f"  {kept.stem}: {kept.read_text()}", file=sys.stderr, flush=True)
         return json.loads(kept.read_text())
+
+    def answer(self, experiment, settings, seed):
+        known = {**compare.settings(self.repose, experiment, "draft"), **settings}
+        setup = apparatus.ALL[experiment](known, seed)
+        setup.physics = self.sealed["physics"]
+        with tempfile.TemporaryDirectory() as folder:
+            return compare.run_peer(self.code, self.program, setup,
+                                    pathlib.Path(folder)).get(self.code, {})
 
     def fills(self, experiment, settings, count):
         """So many fills that were read; a seed that the code cannot fill by is passed over."""
