@@ -163,7 +163,7 @@ TEST_CASE("a replay that answers from what was stored gives the same fit", "[cal
   check_equal(first, again);
 }
 
-TEST_CASE("the budget is never exceeded, however small", "[calibrator]") {
+TEST_CASE("the budget is never exceeded, however small", "[calibrator][slow]") {
   for (const int evaluations : {0, 5, 8, 9, 10, 12, 15, 17, 23, 31}) {
     for (const auto fidelity : {engine::Fidelity::draft, engine::Fidelity::standard}) {
       toy::Study study = toy::two_of_three(1.5);
@@ -406,7 +406,7 @@ TEST_CASE("a prior decides what the data leave open", "[calibrator]") {
   CHECK(fit.posterior.quantiles[2][1] == Approx(0.3).margin(0.02));
 }
 
-TEST_CASE("a limit of time ends the search with its confirmation paid for", "[calibrator]") {
+TEST_CASE("a limit of time ends the search with its confirmation paid for", "[calibrator][slow]") {
   toy::Study study = toy::granular(6, 1.5, 1, 70, 4);
   study.calibration.budget.core_seconds = 50.0;
   int asked = 0;
@@ -432,7 +432,7 @@ TEST_CASE("a limit of time ends the search with its confirmation paid for", "[ca
         by_cores.evaluations);
 }
 
-TEST_CASE("the next batch is a function of what was answered before", "[calibrator]") {
+TEST_CASE("the next batch is a function of what was answered before", "[calibrator][slow]") {
   const toy::Study study = toy::granular(6, 0.5, 4, 40, 4);
   std::vector<std::vector<engine::Trial>> batches;
   std::vector<std::vector<engine::Evaluation>> answers;

@@ -49,7 +49,8 @@ TEST_CASE("coordinates of a hypercube are uniform and uncorrelated", "[calibrato
   CHECK(std::abs(product * 12.0) < 4.0 / std::sqrt(999.0));
 }
 
-TEST_CASE("a design keeps the constraints, and without any is the plain one", "[calibrator]") {
+TEST_CASE("a design keeps the constraints, and without any is the plain one",
+          "[calibrator][slow]") {
   Calibration c;
   for (const char* name : {"toy.u0", "toy.u1", "toy.u2"}) {
     c.free.push_back({repose::engine::make_key(name, {}), 0.0, 1.0, {}, {}});

@@ -35,7 +35,8 @@ constexpr double relaxation = 6e-5;  // s
 
 }  // namespace
 
-TEST_CASE("a speed dependence that our own engine hid is added, and the error falls", "[server]") {
+TEST_CASE("a speed dependence that our own engine hid is added, and the error falls",
+          "[server][slow]") {
   const TemporaryFolder folder;
   Service service(in(folder));
   const std::int64_t id = read(service.calibrate(hidden_drop_study(relaxation), {}, {}))["id"];
