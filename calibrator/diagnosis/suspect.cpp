@@ -25,6 +25,12 @@ std::string_view owner_of(const ParameterKey& key) {
 /// friction is meant.
 bool is_data(const engine::FieldInfo& field, double strong) { return strong == field.null_value; }
 
+/// Whether the field may lie beyond its null on the side away from the strong value, too.
+bool goes_either_way(const engine::FieldInfo& field, double strong) {
+  return strong > field.null_value ? field.lower < field.null_value
+                                   : field.upper > field.null_value;
+}
+
 bool is_data(const ParameterKey& key, const engine::GrainScale& grains) {
   const EffectInfo* effect = engine::find_effect(owner_of(key));
   if (effect == nullptr || effect->strong == nullptr) return false;
@@ -81,8 +87,7 @@ Suspect suspect_of(const EffectInfo& effect,
   for (std::size_t f = 0; f < effect.fields.size(); ++f) {
     const engine::FieldInfo& field = effect.fields[f];
     const bool data = is_data(field, strong[f]);
-    // A field that may lie on either side of its null may be missing on either.
-    if (!data && field.lower < field.null_value) suspect.two_sided = true;
+    if (!data) suspect.two_sided |= goes_either_way(field, strong[f]);
     for (const auto& between : places_of(effect.scope)) {
       const auto key = engine::make_key(suspect.name + "." + std::string(field.name), between);
       if (data && stated.get(key)) continue;

@@ -105,10 +105,13 @@ TEST_CASE("the moisture at which a model is meant is no effect, and is kept", "[
 
 TEST_CASE("an effect that may go either way is looked for on both sides", "[calibrator]") {
   Calibration calibration = study({0.1, 0.2});
-  const auto suspects = suspects_of(calibration, best(0.5, 0.5));
+  const auto suspects = suspects_of(calibration, best(0.5, 0.3));
   CHECK(find(suspects, "moisture_density")->two_sided);
-  CHECK_FALSE(find(suspects, "moisture_friction")->two_sided);
-  extend(*find(suspects, "moisture_density"), best(0.5, 0.5), calibration);
+  for (const Suspect& other : suspects) {
+    CAPTURE(other.name);
+    if (other.name != "moisture_density") CHECK_FALSE(other.two_sided);
+  }
+  extend(*find(suspects, "moisture_density"), best(0.5, 0.3), calibration);
   CHECK(calibration.free.back().lower < 0.0);
   CHECK(calibration.free.back().upper > 0.0);
 }
