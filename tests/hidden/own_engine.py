@@ -158,10 +158,9 @@ class Case:
     def run(self, *words):
         done = subprocess.run([self.asked.repose, *map(str, words), "--json",
                                "--db", self.folder / "runs.db"],
-                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-                              check=False)
+                              capture_output=True, text=True, check=False)
         if done.returncode != 0:
-            sys.exit(f"{self.folder.name}: repose {words[0]} gave up: exit {done.returncode}")
+            sys.exit(f"{self.folder.name}: repose {words[0]}: exit {done.returncode}\n{done.stderr}")
         return json.loads(done.stdout)
 
     def newest(self):
