@@ -62,7 +62,7 @@ inline constexpr std::array<std::string_view, 5> effect_status_names{
 struct Refit {
   std::vector<std::size_t> effects;  ///< indices into Diagnosis::effects
   std::vector<double> strengths;
-  std::vector<double> strength_lower, strength_upper;  ///< 95 %, by profile likelihood
+  std::vector<double> strength_lower, strength_upper;  ///< 95 %, by its profile
   engine::ParameterSet parameters;                     ///< complete
   std::vector<double> predicted;                       ///< SI, one per measurement
   double deviance = 0.0;                               ///< -2 log likelihood but for a constant

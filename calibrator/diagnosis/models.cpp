@@ -22,6 +22,10 @@ constexpr double prior_deviation = 0.6;     // of a free parameter, about the mi
 constexpr double strength_deviation = 1.5;  // of a strength, about zero
 constexpr std::uint64_t starts_design = 1'000'000;  // apart from other designs
 constexpr double threshold = 3.84;  // 95 % of chi-squared with one degree of freedom
+constexpr int profile_steps = 27;   // of the strength
+
+/// -2 log posterior but for a constant.
+double evidence_against(const ModelFit& fit) { return fit.deviance - fit.misfit + fit.objective; }
 
 /// What data and prior know of the parameters: the inverse of their covariance.
 Matrix curvature_of(const Model& model) {
@@ -148,6 +152,11 @@ double Models::held_out_p(const Model& model) const {
 
 Model Models::fit(const Additions& on, std::span<const Vector> starts) const {
   Model model{on, learn(on), space(on), {}};
+  settle(model, starts);
+  return model;
+}
+
+void Models::settle(Model& model, std::span<const Vector> starts) const {
   const Predictor predictor = this->predictor(model.emulator);
   model.fit = fit_model(
       predictor, targets_, covariance(model.emulator, starts.front()), model.space, starts);
@@ -155,50 +164,63 @@ Model Models::fit(const Additions& on, std::span<const Vector> starts) const {
   const std::vector<Vector> again{model.fit.at};
   model.fit =
       fit_model(predictor, targets_, covariance(model.emulator, model.fit.at), model.space, again);
-  return model;
 }
 
-/// A grid, each point started from its neighbour's solution.
-Models::Range Models::strength_range(const Model& model) const {
-  constexpr int steps = 27;
+std::vector<ModelFit> Models::profile(const Model& model) const {
   const auto k = static_cast<Index>(runs_.space().dimensions());
-  const double lower = model.space.lower(k), upper = model.space.upper(k);
-  const double step = (upper - lower) / (steps - 1);
+  const double lower = model.space.lower(k);
+  const double step = (model.space.upper(k) - lower) / (profile_steps - 1);
   const Predictor predictor = this->predictor(model.emulator);
-  std::vector<double> deviance(steps);
-  const int middle =
-      std::clamp(static_cast<int>(std::lround((model.fit.at(k) - lower) / step)), 0, steps - 1);
+  std::vector<ModelFit> fits(profile_steps);
   const auto walk = [&](int from, int to, int direction) {
     Vector x = model.fit.at;
     for (int i = from; i != to; i += direction) {
       ModelSpace held = model.space;
       held.lower(k) = held.upper(k) = lower + step * i;
-      held.precision(k) = 0.0;
       x(k) = held.lower(k);
       const std::vector<Vector> starts{x};
-      const ModelFit fit =
-          fit_model(predictor, targets_, covariance(model.emulator, x), held, starts);
+      ModelFit& fit = fits[static_cast<std::size_t>(i)];
+      fit = fit_model(predictor, targets_, covariance(model.emulator, x), held, starts);
       x = fit.at;
-      deviance[static_cast<std::size_t>(i)] = fit.deviance - fit.misfit + fit.objective;
     }
   };
-  walk(middle, steps, 1);
+  const int middle = std::clamp(
+      static_cast<int>(std::lround((model.fit.at(k) - lower) / step)), 0, profile_steps - 1);
+  walk(middle, profile_steps, 1);
   walk(middle - 1, -1, -1);
+  return fits;
+}
+
+void Models::deepen(Model& model) const {
+  const ModelFit found = model.fit;
+  const std::vector<ModelFit> fits = profile(model);
+  const ModelFit& deepest = *std::ranges::min_element(fits, {}, &evidence_against);
+  if (evidence_against(deepest) >= evidence_against(found)) return;
+  const std::vector<Vector> starts{deepest.at};
+  settle(model, starts);
+  if (evidence_against(model.fit) >= evidence_against(found)) model.fit = found;
+}
+
+Models::Range Models::strength_range(const Model& model) const {
+  const auto k = static_cast<Index>(runs_.space().dimensions());
+  const std::vector<ModelFit> fits = profile(model);
+  const double best =
+      std::min(evidence_against(model.fit),
+               evidence_against(*std::ranges::min_element(fits, {}, &evidence_against)));
   // The square root of a gain is nearly straight: the limits lie between the grid's points.
-  const double best = *std::ranges::min_element(deviance);
-  const auto root = [&](int i) { return std::sqrt(deviance[static_cast<std::size_t>(i)] - best); };
+  const auto root = [&](const ModelFit& fit) { return std::sqrt(evidence_against(fit) - best); };
   const double limit = std::sqrt(threshold);
-  const auto crossing = [&](int inside, int outside) {
+  const auto crossing = [&](const ModelFit& inside, const ModelFit& outside) {
     const double share = (limit - root(inside)) / (root(outside) - root(inside));
-    return lower + step * (inside + share * (outside - inside));
+    return inside.at(k) + share * (outside.at(k) - inside.at(k));
   };
-  Range range{upper, lower};
-  for (int i = 0; i < steps; ++i) {
-    if (root(i) > limit) continue;
-    range.lower =
-        std::min(range.lower, i > 0 && root(i - 1) > limit ? crossing(i, i - 1) : lower + step * i);
-    range.upper = std::max(
-        range.upper, i + 1 < steps && root(i + 1) > limit ? crossing(i, i + 1) : lower + step * i);
+  Range range{model.fit.at(k), model.fit.at(k)};
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (root(fits[i]) > limit) continue;
+    const bool below = i > 0 && root(fits[i - 1]) > limit;
+    const bool above = i + 1 < fits.size() && root(fits[i + 1]) > limit;
+    range.lower = std::min(range.lower, below ? crossing(fits[i], fits[i - 1]) : fits[i].at(k));
+    range.upper = std::max(range.upper, above ? crossing(fits[i], fits[i + 1]) : fits[i].at(k));
   }
   return range;
 }

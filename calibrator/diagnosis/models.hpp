@@ -40,7 +40,11 @@ class Models {
   /// The model with these suspects free, from everything that has been run so far.
   [[nodiscard]] Model fit(const Additions& on, std::span<const Eigen::VectorXd> starts) const;
 
-  /// 95 % interval of the strength of its first addition.
+  /// Moves a model with one addition to where its profile over the strength lies lowest, if that is
+  /// below where its own search ended.
+  void deepen(Model& model) const;
+
+  /// 95 % interval of the strength of its first addition, by the profile of its posterior.
   struct Range {
     double lower = 0.0, upper = 0.0;
   };
@@ -72,6 +76,10 @@ class Models {
 
  private:
   [[nodiscard]] TrendEmulator learn(const Additions& on) const;
+  void settle(Model& model, std::span<const Eigen::VectorXd> starts) const;
+
+  /// The best fit at each strength of a grid, started from its neighbour's.
+  [[nodiscard]] std::vector<ModelFit> profile(const Model& model) const;
 
   const DiagnosisQuestion& question_;
   const SuiteRuns& runs_;

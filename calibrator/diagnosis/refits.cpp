@@ -226,7 +226,10 @@ std::optional<std::vector<Model>> Refits::fit(const std::vector<Additions>& cand
   }
   std::vector<Model> models;
   models.reserve(all.size());
-  for (Candidate& candidate : all) models.push_back(*std::move(candidate.model));
+  for (Candidate& candidate : all) {
+    if (candidate.on.size() == 1) models_.deepen(*candidate.model);
+    models.push_back(*std::move(candidate.model));
+  }
   return models;
 }
 

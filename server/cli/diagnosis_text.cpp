@@ -74,7 +74,7 @@ std::string effect_table(const Diagnosis& diagnosis) {
                cell(fixed_text(finding->score, 1)),
                cell(p_text(finding->p)),
                cell(fixed_text(finding->strength, 2)),
-               cell(fixed_text(finding->detectable, 2)),
+               cell(detectable_text(*finding)),
                cell(fixed_text(100.0 * finding->absorbed, 0) + " %"),
                status_of(*finding, diagnosis.parameters)});
   }

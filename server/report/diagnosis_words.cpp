@@ -23,6 +23,8 @@ std::string parameter_name(const engine::ParameterKey& key) {
   return name;
 }
 
+constexpr double in_sight = 10.0;  // times a strong one: so far a probed step may be thought on
+
 std::string percent(double share) { return fixed_text(100.0 * share, 0) + " %"; }
 
 std::string of_supported(const Diagnosis& diagnosis, std::size_t effect) {
@@ -47,8 +49,10 @@ std::string of_untestable(const EffectFinding& finding) {
     return "The free parameters imitate " + percent(finding.absorbed) +
            " of what it does to these measurements.";
   }
-  return "Even a strong one changes these measurements too little: it would be found from " +
-         fixed_text(finding.detectable, 1) + " times the strong value on.";
+  const std::string too_little = "Even a strong one changes these measurements too little";
+  if (!(finding.detectable < in_sight)) return too_little + ".";
+  return too_little + ": it would be found from " + fixed_text(finding.detectable, 1) +
+         " times the strong value on.";
 }
 
 }  // namespace
@@ -56,6 +60,11 @@ std::string of_untestable(const EffectFinding& finding) {
 bool leaves_no_trace(const EffectFinding& finding) {
   return std::ranges::none_of(finding.change,
                               [](double change) { return std::isfinite(change) && change != 0.0; });
+}
+
+std::string detectable_text(const EffectFinding& finding) {
+  return finding.detectable < in_sight ? fixed_text(finding.detectable, 2)
+                                       : "> " + fixed_text(in_sight, 0);
 }
 
 std::string strength_text(const EffectFinding& finding,

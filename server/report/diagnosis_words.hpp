@@ -8,6 +8,9 @@
 
 namespace repose::server {
 
+/// From which strength on it would be found, in strong ones; "> 10" where that tells nothing more.
+std::string detectable_text(const calibrator::EffectFinding& finding);
+
 /// The strength in the effect's own terms: "relaxation 0.12 ms"; empty where it has none.
 std::string strength_text(const calibrator::EffectFinding& finding,
                           const engine::ParameterSet& parameters,

@@ -67,13 +67,19 @@ TEST_CASE("what only held-out measurements show is no adequate model", "[calibra
   CHECK(met.p_held_out < 1.0);
 }
 
-TEST_CASE("a diagnosis asked twice has the same answer to the bit", "[calibrator]") {
+TEST_CASE("a diagnosis asked twice has the same answer to the bit; strengths keep their limits",
+          "[calibrator]") {
   const auto problem = stand_in::make_problem(11, {{"weaken", 0.9}});
   const Diagnosis once = stand_in::diagnose(problem), again = stand_in::diagnose(problem);
   REQUIRE(once.refits.size() == again.refits.size());
   for (std::size_t i = 0; i < once.refits.size(); ++i) {
     CHECK(once.refits[i].deviance == again.refits[i].deviance);
     CHECK(once.refits[i].strengths == again.refits[i].strengths);
+  }
+  for (const calibrator::Refit& refit : once.refits) {
+    if (refit.effects.size() != 1) continue;
+    CHECK(refit.strength_lower.front() <= refit.strengths.front());
+    CHECK(refit.strengths.front() <= refit.strength_upper.front());
   }
   CHECK(once.p_named == again.p_named);
 }
