@@ -53,7 +53,7 @@ struct MoistureDensity {
   static constexpr Stage stage = Stage::amendment;
   static constexpr Scope scope = Scope::material;
 
-  static constexpr Parameters strong(const GrainScale&) { return {1.5, 0.12}; }
+  static constexpr Parameters strong(const GrainScale&) { return {2.0, 0.12}; }
 
   static constexpr std::string_view amends = "material.density";
 
