@@ -99,10 +99,12 @@ class Kettle(Apparatus):
 
     skins = {"liggghts": 0.002, "lammps": 0.0015}
 
-    def prepare(self, folder):
+    def vessel(self):
         radius = 0.5 * self.s["diameter"]
-        write_stl(folder / "kettle.stl",
-                  tube(radius, 0.0, self.s["height"]) + disc(radius, 0.0))
+        return tube(radius, 0.0, self.s["height"]) + disc(radius, 0.0)
+
+    def prepare(self, folder):
+        write_stl(folder / "kettle.stl", self.vessel())
 
     def parts(self, code):
         s, radius = self.s, 0.5 * self.s["diameter"]

@@ -6,25 +6,28 @@
 The sealed file says what the grains are truly like: the code, its deck's variables, and the study
 without its measurements. The study tells nothing of it. Apparatus and reading are those of
 tests/cross_code; every reading is the mean of some fills, its standard error the scatter of their
-mean and the noise. Readings are kept in --keep as they come. Needs Debian's liggghts or lammps.
+mean and the noise. Readings are kept in --keep as they come. Needs Debian's liggghts, lammps or yade.
 """
 import argparse
 import json
 import math
+import os
 import pathlib
 import random
 import shutil
 import statistics
+import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path += [str(ROOT / "tests/benchmarks"), str(ROOT / "tests/cross_code")]
+SHARED = [str(ROOT / "tests/benchmarks"), str(ROOT / "tests/cross_code")]
+sys.path += SHARED
 
 import apparatus  # noqa: E402
 import compare  # noqa: E402
 
-PROGRAMS = {"liggghts": "liggghts", "lammps": "lmp"}
+PROGRAMS = {"liggghts": "liggghts", "lammps": "lmp", "yade": "yade"}
 
 
 class Laboratory:
@@ -46,11 +49,24 @@ class Laboratory:
 
     def answer(self, experiment, settings, seed):
         known = {**compare.settings(self.repose, experiment, "draft"), **settings}
+        if self.code == "yade":
+            return self.in_yade({"experiment": experiment, "settings": known, "seed": seed,
+                                 "physics": self.sealed["physics"]})
         setup = apparatus.ALL[experiment](known, seed)
         setup.physics = self.sealed["physics"]
         with tempfile.TemporaryDirectory() as folder:
             return compare.run_peer(self.code, self.program, setup,
                                     pathlib.Path(folder)).get(self.code, {})
+
+    def in_yade(self, asked):
+        done = subprocess.run([self.program, "-x", "-n", str(ROOT / "tests/cross_code/in_yade.py")],
+                              env={**os.environ, "PYTHONPATH": os.pathsep.join(SHARED),
+                                   "REPOSE_YADE": json.dumps(asked)},
+                              capture_output=True, text=True, check=False)
+        told = [line for line in done.stdout.splitlines() if line.startswith("ANSWER ")]
+        if not told:
+            print(f"  yade stopped and is left out: {done.stderr[-500:]}", file=sys.stderr)
+        return json.loads(told[0].removeprefix("ANSWER ")) if told else {}
 
     def fills(self, experiment, settings, count):
         """So many fills that were read; a seed that the code cannot fill by is passed over."""
