@@ -81,6 +81,17 @@ class Improvement {
   Eigen::ArrayXXd draws_;
 };
 
+/// Log of what the nearness of a batch's other new points leaves of a point's worth.
+double log_apart(std::span<const UnitPoint> others, std::span<const double> point) {
+  const double reach_squared = 0.35 * 0.35 * static_cast<double>(point.size());
+  double sum = 0.0;
+  for (const UnitPoint& other : others) {
+    const double gap = distance(other, point);
+    sum += std::log(std::max(-std::expm1(-0.5 * gap * gap / reach_squared), 1e-12));
+  }
+  return sum;
+}
+
 /// How many of a batch repeat the recommended point instead of exploring (calibration.md 7.6).
 int repeats_of_recommended(const Outlook& outlook,
                            const UnitPoint& recommended,
@@ -250,6 +261,7 @@ std::vector<UnitPoint> propose(const Outlook& outlook,
   const double reference = expected_misfit(outlook, starts.empty() ? recommended : starts.front());
   const Improvement improvement(outlook, reference);
   starts.push_back(recommended);
+  std::vector<UnitPoint> explored;
   while (chosen.size() < static_cast<std::size_t>(count)) {
     const Surrogate believed = outlook.surrogate.believing(chosen, scatter.variance);
     const auto gain_at = [&](std::span<const double> point) {
@@ -257,12 +269,13 @@ std::vector<UnitPoint> propose(const Outlook& outlook,
     };
     const Objective objective = [&](std::span<const double> point) {
       return cost.logarithm_at(point) - std::log(feasibility.at(point)) -
-             std::log(std::max(gain_at(point), 1e-300));
+             std::log(std::max(gain_at(point), 1e-300)) - log_apart(explored, point);
     };
     const Minimum found = minimise(objective, space.box(), starts, global, {.evaluations = 80});
     // Where there is little to gain, better knowledge of the best is worth more (7.6 i).
     const bool little = gain_at(found.at) < 0.1 * static_cast<double>(outlook.targets.size());
     chosen.push_back(little ? settled : settle(outlook, found.at));
+    if (!little) explored.push_back(chosen.back());
   }
   return chosen;
 }

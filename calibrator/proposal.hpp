@@ -5,14 +5,17 @@
 ///   E Q   = p(u) + sum (a^2 + b^2)
 ///   EI(u) = 1/S sum_s tau log(1 + exp((Q* - Q_s(u)) / tau)),  tau = 0.05 (1 + Q*)
 ///   maximised: log EI(u) + log P_ok(u) - log cost(u)
+///              + sum_c log(1 - exp(-|u - c|^2 / (2 rho^2))),  rho = 0.35 sqrt(d)
 ///
 ///   mu, sd  emulator   y, sigma  target   p  misfit of the priors, where there are any
 ///   Q_s     p + sum r_j^2 of one of S = 64 fixed antithetic draws
 ///   Q*      smallest E Q over the evaluated points: the model's value, never the luckiest run's
 ///   P_ok    chance that a run succeeds   cost  grain-steps of an evaluation
+///   c       the batch's points so far that explore; the emulator believes in its own word there
 ///
 /// Source: composite expected improvement, Astudillo & Frazier 2019 (ICML); distribution of the
-///         squared norm, Uhrenholt & Jensen 2019 (PMLR 89, 2661-2670).
+///         squared norm, Uhrenholt & Jensen 2019 (PMLR 89, 2661-2670); points of a batch kept apart,
+///         after Gonzalez, Dai, Hennig & Lawrence 2016 (PMLR 51, 648-657), at a fixed distance.
 #pragma once
 
 #include <cstddef>
