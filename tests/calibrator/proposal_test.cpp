@@ -40,8 +40,7 @@ TEST_CASE("a batch has the size asked for, in the cube, the same each time", "[c
   CHECK(batch == propose(known.outlook(), best, 4, 0));
 }
 
-TEST_CASE("points pending in a batch are not proposed again while there is much to gain",
-          "[calibrator]") {
+TEST_CASE("points of a batch keep apart while there is much to gain", "[calibrator]") {
   // Few, poor samples of a wavy response: everything is still to be learnt.
   toy::Study study;
   study.response = [](std::span<const double> u) {
@@ -52,6 +51,8 @@ TEST_CASE("points pending in a batch are not proposed again while there is much 
   const toy::Known known(toy::ask(std::move(study), 3, 60, 4), 6, 1);
   const auto batch = propose(known.outlook(), recommend(known.outlook(), {}), 4, 0);
   CHECK(smallest_distance(batch) > 0.02);
+  const std::vector<UnitPoint> exploring(batch.begin() + 1, batch.end());  // the first one exploits
+  CHECK(smallest_distance(exploring) > 0.1);
 }
 
 TEST_CASE("the vote on feasibility follows the nearest sites", "[calibrator]") {
