@@ -17,12 +17,8 @@ import random
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path += [str(ROOT / "tests/hidden"), str(ROOT / "tests/benchmarks"),
-             str(ROOT / "tests/cross_code")]
-
-import compare  # noqa: E402
-import make_study  # noqa: E402
+import make_study
+from make_study import ROOT, compare
 
 GG, GW = ["grain", "grain"], ["grain", "wall"]
 
