@@ -181,6 +181,18 @@ TEST_CASE("a model by itself has a report too", "[server]") {
   CHECK(text.find("→") == std::string::npos);
 }
 
+TEST_CASE("from which strength on an effect would be found is said as far as that tells anything",
+          "[server]") {
+  Lineage lineage = sample();
+  calibrator::EffectFinding& finding = lineage.front().diagnosis->effects[0];
+  finding.absorbed = 0.2;
+  CHECK_THAT(reason(*lineage.front().diagnosis, 0), Contains("from 4.0 times the strong value on"));
+  CHECK(detectable_text(finding) == "4.00");
+  finding.detectable = 117578.6;
+  CHECK_THAT(reason(*lineage.front().diagnosis, 0), Contains("too little.") && !Contains("times"));
+  CHECK(detectable_text(finding) == "> 10");
+}
+
 TEST_CASE("the reason for a status is said in the effect's own terms", "[server]") {
   const Lineage lineage = sample();
   const calibrator::Diagnosis& diagnosis = *lineage.front().diagnosis;
