@@ -130,10 +130,14 @@ class OwnLaboratory(make_study.Laboratory):
         return {o["name"]: o["value"] for o in json.loads(done.stdout)["observations"]}
 
 
+def name_of(grain, hidden):
+    return f"{grain} {hidden}".replace(" ", "-")
+
+
 class Case:
     def __init__(self, grain, hidden, asked, catalogue, factors):
         self.grain, self.hidden, self.asked = grain, hidden, asked
-        self.folder = asked.keep / f"{grain} {hidden}".replace(" ", "-")
+        self.folder = asked.keep / name_of(grain, hidden)
         self.folder.mkdir(parents=True, exist_ok=True)
         self.study = self.folder / "study.json"
         if not self.study.exists():
@@ -194,22 +198,23 @@ def errors(comparison):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    cases = {name_of(grain, hidden): (grain, hidden) for hidden in HIDDEN for grain in GRAINS}
     parser.add_argument("--cases", help="as bean-shape,pellet-nothing; default: all sixteen")
     parser.add_argument("--workers", type=int, default=os.cpu_count())
     parser.add_argument("--repose", default=ROOT / "build/repose")
     parser.add_argument("--keep", type=pathlib.Path, default=ROOT / "build/hidden/own")
     parser.add_argument("--out", type=pathlib.Path)
     asked = parser.parse_args()
+    names = asked.cases.split(",") if asked.cases else list(cases)
+    if unknown := set(names) - set(cases):
+        sys.exit(f"--cases: there is no {', '.join(sorted(unknown))}; there are {', '.join(cases)}")
     catalogue, factors = compare.catalogue(asked.repose)
     rows = []
-    for hidden in HIDDEN:
-        for grain in GRAINS:
-            if asked.cases and f"{grain} {hidden}".replace(" ", "-") not in asked.cases.split(","):
-                continue
-            rows.append(Case(grain, hidden, asked, catalogue, factors).row())
-            print(json.dumps(rows[-1]), flush=True)
-            if asked.out:
-                asked.out.write_text(json.dumps(rows, indent=1) + "\n")
+    for name in names:
+        rows.append(Case(*cases[name], asked, catalogue, factors).row())
+        print(json.dumps(rows[-1]), flush=True)
+        if asked.out:
+            asked.out.write_text(json.dumps(rows, indent=1) + "\n")
 
 
 if __name__ == "__main__":
