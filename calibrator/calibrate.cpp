@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -47,10 +48,14 @@ class Search {
   void learn();
   void search(int count);
   bool confirm();
+  StopReason close();
   [[nodiscard]] std::optional<StopReason> verdict();
   [[nodiscard]] int reserve() const;
+  [[nodiscard]] int kept_back() const;
+  Confirmation& confirmation_of(const UnitPoint& point);
   [[nodiscard]] Outlook outlook() const { return {ledger_, *surrogate_, targets_}; }
   [[nodiscard]] std::vector<Belief> predict(const UnitPoint& point) const;
+  [[nodiscard]] const Confirmation* best_confirmed() const;
   void complete_history();
   void report(std::string_view stage) const;
   void report_baseline(const BaselineSearch& search);
@@ -66,8 +71,8 @@ class Search {
   Offset offset_;
   std::vector<Target> targets_;
   UnitPoint recommended_;
-  std::size_t base_ = 0;  ///< the site last run at the confirming fidelity
-  std::optional<Confirmation> confirmation_;
+  std::size_t base_ = 0;                     ///< the site last run at the confirming fidelity
+  std::vector<Confirmation> confirmations_;  ///< one a site, the latest at the end
   int rounds_ = 0;
   int implausible_rounds_ = 0;  ///< in a row
 };
@@ -98,13 +103,12 @@ Fit Search::run() {
   while (!stop_.stop_requested()) {
     if (const auto reason = verdict()) {
       if (confirm()) return finish(StopReason::hit);
-      if (*reason != StopReason::hit && promise_kept(outlook(), *confirmation_))
+      if (*reason != StopReason::hit && promise_kept(outlook(), confirmations_.back()))
         return finish(*reason);
-      if (ledger_.remaining() <= reserve()) return finish(StopReason::budget);
       learn();  // what was confirmed is evidence like any other
     }
-    const int room = ledger_.remaining() - reserve();
-    if (room <= 0) return finish(confirm() ? StopReason::hit : StopReason::budget);
+    const int room = ledger_.remaining() - kept_back();
+    if (room <= 0) return finish(close());
     search(std::min(std::max(calibration_.budget.batch, 1), room));
     learn();
     report("search");
@@ -244,21 +248,67 @@ int Search::reserve() const {
   return std::max(plan_.confirm, plan_.confirm < 4 ? 0 : confirming_replicates(ledger_));
 }
 
-/// Fresh replicates of the recommended point. True if they are a hit.
+/// Runs that a search does not spend: once it has begun, those of a second confirmation too, should
+/// the first belie what was recommended and the budget have room for it.
+int Search::kept_back() const {
+  const int twice = 2 * plan_.confirm;
+  return rounds_ > 0 && ledger_.remaining() >= twice ? std::max(reserve(), twice) : reserve();
+}
+
+/// The one of a point's site, moved to the end; a new one has no runs.
+Confirmation& Search::confirmation_of(const UnitPoint& point) {
+  const std::size_t site = ledger_.site_at(point);
+  const auto found = std::ranges::find(confirmations_, site, &Confirmation::site);
+  if (found == confirmations_.end()) {
+    confirmations_.push_back({site, {}, predict(point)});
+  } else {
+    std::rotate(found, found + 1, confirmations_.end());
+  }
+  return confirmations_.back();
+}
+
+/// Fresh replicates of the recommended point, no more of them once they cannot be a hit. True if
+/// they are one, together with those that the point had before.
 bool Search::confirm() {
   const UnitPoint point = by_baseline() ? recommended_ : settle(outlook(), recommended_);
-  Confirmation confirmation{ledger_.site_at(point), {}, predict(point)};
-  Requests requests;
-  const int first = ledger_.fresh_replicate(confirmation.site);
-  const int count = std::min(reserve(), ledger_.remaining());
-  for (int r = 0; r < count; ++r) {
-    requests.push_back({confirmation.site, first + r, Level::confirm});
-  }
-  confirmation.runs = ledger_.run("confirm", requests);
+  Confirmation& confirmation = confirmation_of(point);
   base_ = confirmation.site;
-  confirmation_ = std::move(confirmation);
+  const int at_a_time = std::max(plan_.confirm, calibration_.budget.batch);
+  int left = std::min(reserve(), ledger_.remaining());
+  while (left > 0 && !stop_.stop_requested()) {
+    Requests requests;
+    const int first = ledger_.fresh_replicate(confirmation.site);
+    for (int r = 0; r < std::min(at_a_time, left); ++r) {
+      requests.push_back({confirmation.site, first + r, Level::confirm});
+    }
+    std::ranges::move(ledger_.run("confirm", requests), std::back_inserter(confirmation.runs));
+    if (!may_be_hit(ledger_, confirmation.runs)) break;
+    left -= at_a_time;
+  }
   report("confirm");
-  return is_hit(ledger_, confirmation_->runs);
+  return is_hit(ledger_, confirmation.runs);
+}
+
+/// The last of the budget: what is recommended is confirmed, and what the emulator recommends having
+/// learnt from that.
+StopReason Search::close() {
+  while (confirmations_.empty() || ledger_.remaining() >= plan_.confirm) {
+    if (confirm()) return StopReason::hit;
+    if (stop_.stop_requested()) break;
+    learn();
+  }
+  return StopReason::budget;
+}
+
+/// Of the points confirmed, the one whose runs came closest; null if there is none.
+const Confirmation* Search::best_confirmed() const {
+  const auto shown = [this](const Confirmation& each) {
+    Fit fit;
+    fill_predictions(outlook(), each, fit);
+    return fit.misfit;
+  };
+  const auto best = std::ranges::min_element(confirmations_, {}, shown);
+  return best == confirmations_.end() ? nullptr : &*best;
 }
 
 /// A reason to stop searching, if the emulator sees one; it is to be confirmed.
@@ -344,9 +394,10 @@ Fit Search::finish(StopReason reason) {
     return fit;
   }
   learn();  // the confirming runs too
-  const bool confirmed = confirmation_ && reason != StopReason::cancelled;
-  if (!confirmed) confirmation_.reset();
-  const UnitPoint best = confirmed ? ledger_.sites()[confirmation_->site].at : recommended_;
+  if (reason == StopReason::cancelled) confirmations_.clear();
+  const Confirmation* confirmed =
+      reason == StopReason::hit ? &confirmations_.back() : best_confirmed();
+  const UnitPoint best = confirmed ? ledger_.sites()[confirmed->site].at : recommended_;
   Fit fit;
   fit.best = ledger_.space().at(best);
   fit.stop = reason;
@@ -354,8 +405,7 @@ Fit Search::finish(StopReason reason) {
   fit.failed = ledger_.failed();
   fit.offset = offset_.value;
   for (const double variance : offset_.variance) fit.offset_error.push_back(std::sqrt(variance));
-  if (!confirmation_) confirmation_ = Confirmation{0, {}, predict(best)};
-  fill_predictions(outlook(), *confirmation_, fit);
+  fill_predictions(outlook(), confirmed ? *confirmed : Confirmation{0, {}, predict(best)}, fit);
   fill_parameters(outlook(), best, fit);
   fit.history = ledger_.history();
   fit.remarks = remarks(outlook(), fit);

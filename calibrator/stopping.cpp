@@ -80,6 +80,20 @@ bool is_hit(const Ledger& ledger, std::span<const SiteRun> replicates) {
   return true;
 }
 
+bool may_be_hit(const Ledger& ledger, std::span<const SiteRun> replicates) {
+  const auto& measurements = ledger.calibration().measurements;
+  const Scatter scatter = ledger.scatter(Level::confirm);
+  for (std::size_t j = 0; j < measurements.size(); ++j) {
+    if (measurements[j].role != Role::fit) continue;
+    const RunMean runs = mean_of(replicates, j);
+    if (runs.count < static_cast<int>(replicates.size())) return false;
+    const double error = std::sqrt(run_variance(runs, scatter.variance[j]) / runs.count);
+    const double sigma = standard_uncertainty(measurements[j]);
+    if (std::abs(runs.mean - measurements[j].value) - 2.0 * error > sigma) return false;
+  }
+  return true;
+}
+
 double probability_of_hit(const Outlook& outlook, const UnitPoint& point, int replicates) {
   const Scatter scatter = outlook.ledger.scatter(Level::search);
   double probability = 1.0;

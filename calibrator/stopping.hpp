@@ -27,6 +27,9 @@ int confirming_replicates(const Ledger& ledger);
 /// Whether fresh replicates are within one standard error of every fitted measurement.
 bool is_hit(const Ledger& ledger, std::span<const SiteRun> replicates);
 
+/// Whether more of them could still be: none of the means is two of its standard errors outside.
+bool may_be_hit(const Ledger& ledger, std::span<const SiteRun> replicates);
+
 /// The chance that `replicates` runs at the point would be a hit, the observables independent.
 double probability_of_hit(const Outlook& outlook, const UnitPoint& point, int replicates);
 

@@ -286,6 +286,50 @@ TEST_CASE("two targets that contradict each other end the search early", "[calib
   CHECK(fit.parameters[0].value == Approx(0.5).margin(0.05));
 }
 
+TEST_CASE("a set that fresh runs belie is not the answer where another was confirmed better",
+          "[calibrator][slow]") {
+  int twice = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const toy::Study study = toy::eight_by_eight(seed, 32, 4);
+    const Fit fit = solve(study);
+    check_complete(study, fit);
+    // Misfits of the means of each set's confirming runs, against the errors of the targets.
+    std::vector<std::pair<engine::ParameterSet, std::vector<std::vector<double>>>> sets;
+    for (const HistoryPoint& point : fit.history) {
+      if (point.stage != "confirm") continue;
+      auto found = std::ranges::find(sets, point.parameters, [](const auto& s) { return s.first; });
+      if (found == sets.end()) found = sets.insert(found, {point.parameters, {}});
+      found->second.push_back(point.values);
+    }
+    REQUIRE_FALSE(sets.empty());
+    if (sets.size() > 1) ++twice;
+    const auto misfit_of = [&](const auto& set) {
+      double sum = 0.0;
+      for (std::size_t j = 0; j < study.sigma.size(); ++j) {
+        double mean = 0.0;
+        for (const auto& values : set.second) {
+          mean += values[j] / static_cast<double>(set.second.size());
+        }
+        const double z = (mean - study.calibration.measurements[j].value) / study.sigma[j];
+        sum += z * z;
+      }
+      return sum;
+    };
+    const auto told = std::ranges::find(sets, fit.best, [](const auto& s) { return s.first; });
+    REQUIRE(told != sets.end());
+    for (const auto& set : sets) CHECK(misfit_of(*told) < 1.5 * misfit_of(set) + 1.0);
+  }
+  CHECK(twice > 0);
+}
+
+TEST_CASE("fresh runs that rule a hit out are not repeated", "[calibrator]") {
+  toy::Study study = toy::two_of_three(1.5);       // eight would confirm
+  study.calibration.measurements[0].value = 30.0;  // y0 reaches 10.1
+  const Fit fit = solve(study);
+  CHECK(fit.stop == StopReason::implausible);
+  CHECK(std::ranges::count(fit.history, std::string_view("confirm"), &HistoryPoint::stage) == 4);
+}
+
 TEST_CASE("simulations noisier than the measurement are named", "[calibrator]") {
   toy::Study study = toy::two_of_three(3.0);
   study.calibration.budget.evaluations = 30;

@@ -36,6 +36,21 @@ TEST_CASE("replicates of which one failed are no hit", "[calibrator]") {
   CHECK_FALSE(is_hit(known.ledger(), runs));
 }
 
+TEST_CASE("replicates far from a target are given up, those near it are not", "[calibrator]") {
+  toy::Known known(toy::two_of_three(0.5), 8);
+  const double y0 = known.study().calibration.measurements[0].value;
+  const double y1 = known.study().calibration.measurements[1].value;
+  // Standard errors of the measurements are 0.5; the mean of four runs is good to about 0.13.
+  const std::vector<SiteRun> near(4, seen(y0 + 0.6, y1));
+  CHECK_FALSE(is_hit(known.ledger(), near));
+  CHECK(may_be_hit(known.ledger(), near));
+  CHECK_FALSE(may_be_hit(known.ledger(), std::vector<SiteRun>(4, seen(y0 + 1.5, y1))));
+  std::vector<SiteRun> failed(4, seen(y0, y1));
+  CHECK(may_be_hit(known.ledger(), failed));
+  failed[2] = seen(std::nan(""), y1);
+  CHECK_FALSE(may_be_hit(known.ledger(), failed));
+}
+
 TEST_CASE("the noisier the simulation, the more replicates confirm it", "[calibrator]") {
   toy::Known quiet(toy::two_of_three(0.1), 8);
   toy::Known noisy(toy::two_of_three(1.5), 8);
