@@ -24,6 +24,8 @@
 namespace repose::calibrator {
 namespace {
 
+constexpr int least_rounds = 2;  // of a search, before it is judged
+
 class Search {
  public:
   Search(const Calibration& calibration,
@@ -248,11 +250,14 @@ int Search::reserve() const {
   return std::max(plan_.confirm, plan_.confirm < 4 ? 0 : confirming_replicates(ledger_));
 }
 
-/// Runs that a search does not spend: once it has begun, those of a second confirmation too, should
-/// the first belie what was recommended and the budget have room for it.
+/// Runs that a search does not spend: once it has had two rounds, those of a second confirmation
+/// too, should the first belie what was recommended. Not while nothing seems to fit: whether that is
+/// so takes another round.
 int Search::kept_back() const {
   const int twice = 2 * plan_.confirm;
-  return rounds_ > 0 && ledger_.remaining() >= twice ? std::max(reserve(), twice) : reserve();
+  const bool second =
+      rounds_ >= least_rounds && implausible_rounds_ == 0 && ledger_.remaining() >= twice;
+  return second ? std::max(reserve(), twice) : reserve();
 }
 
 /// The one of a point's site, moved to the end; a new one has no runs.
@@ -316,7 +321,7 @@ std::optional<StopReason> Search::verdict() {
   if (ledger_.remaining() < reserve()) return std::nullopt;
   const UnitPoint point = settle(outlook(), recommended_);
   if (probability_of_hit(outlook(), point, reserve()) > 0.5) return StopReason::hit;
-  if (rounds_ < 2 && !calibration_.free.empty()) return std::nullopt;
+  if (rounds_ < least_rounds && !calibration_.free.empty()) return std::nullopt;
   const bool far = least_implausibility(outlook(), recommended_) > 3.0;
   implausible_rounds_ = far ? implausible_rounds_ + 1 : 0;
   if (implausible_rounds_ >= 2) return StopReason::implausible;

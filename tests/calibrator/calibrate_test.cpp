@@ -290,7 +290,7 @@ TEST_CASE("a set that fresh runs belie is not the answer where another was confi
           "[calibrator][slow]") {
   int twice = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const toy::Study study = toy::eight_by_eight(seed, 32, 4);
+    const toy::Study study = toy::eight_by_eight(seed, 36, 4);
     const Fit fit = solve(study);
     check_complete(study, fit);
     // Misfits of the means of each set's confirming runs, against the errors of the targets.
