@@ -169,6 +169,17 @@ TEST_CASE("a measurement that no parameter can meet is a model that is no longer
   CHECK(plant.last()["outcome"] == "unchanged");
 }
 
+TEST_CASE("a first fit that misses its only measurement is not put in force", "[server]") {
+  Plant plant;
+  plant.add(0.6);
+  plant.measure(0.1, 0.005);  // the search ends at 0.3; with twelve evaluations by its budget
+  plant.now += 24h;
+  plant.run();
+  CHECK(plant.last()["outcome"] == "model_no_longer_adequate");
+  CHECK(plant.last()["result"]["promoted"] == false);
+  CHECK(plant.standing()["promoted"].is_null());
+}
+
 TEST_CASE("a night without news keeps no fit where none is in force", "[server][slow]") {
   Plant plant;
   Json study = drop_study(0.6);
