@@ -50,6 +50,22 @@ std::vector<UnitPoint> promising(const Outlook& outlook, const UnitPoint& recomm
   return result;
 }
 
+/// Whether the mean of each fitted measurement, moved away from the target by so many of its
+/// standard errors, is within the measurement's.
+bool within(const Ledger& ledger, std::span<const SiteRun> replicates, double errors) {
+  const auto& measurements = ledger.calibration().measurements;
+  const Scatter scatter = ledger.scatter(Level::confirm);
+  for (std::size_t j = 0; j < measurements.size(); ++j) {
+    if (measurements[j].role != Role::fit) continue;
+    const RunMean runs = mean_of(replicates, j);
+    if (runs.count < 2 || runs.count < static_cast<int>(replicates.size())) return false;
+    const double error = std::sqrt(run_variance(runs, scatter.variance[j]) / runs.count);
+    const double sigma = standard_uncertainty(measurements[j]);
+    if (std::abs(runs.mean - measurements[j].value) + errors * error > sigma) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 int confirming_replicates(const Ledger& ledger) {
@@ -67,31 +83,11 @@ int confirming_replicates(const Ledger& ledger) {
 }
 
 bool is_hit(const Ledger& ledger, std::span<const SiteRun> replicates) {
-  const auto& measurements = ledger.calibration().measurements;
-  const Scatter scatter = ledger.scatter(Level::confirm);
-  for (std::size_t j = 0; j < measurements.size(); ++j) {
-    if (measurements[j].role != Role::fit) continue;
-    const RunMean runs = mean_of(replicates, j);
-    if (runs.count < 2 || runs.count < static_cast<int>(replicates.size())) return false;
-    const double error = std::sqrt(run_variance(runs, scatter.variance[j]) / runs.count);
-    const double sigma = standard_uncertainty(measurements[j]);
-    if (std::abs(runs.mean - measurements[j].value) + error > sigma) return false;
-  }
-  return true;
+  return within(ledger, replicates, 1.0);
 }
 
 bool may_be_hit(const Ledger& ledger, std::span<const SiteRun> replicates) {
-  const auto& measurements = ledger.calibration().measurements;
-  const Scatter scatter = ledger.scatter(Level::confirm);
-  for (std::size_t j = 0; j < measurements.size(); ++j) {
-    if (measurements[j].role != Role::fit) continue;
-    const RunMean runs = mean_of(replicates, j);
-    if (runs.count < static_cast<int>(replicates.size())) return false;
-    const double error = std::sqrt(run_variance(runs, scatter.variance[j]) / runs.count);
-    const double sigma = standard_uncertainty(measurements[j]);
-    if (std::abs(runs.mean - measurements[j].value) - 2.0 * error > sigma) return false;
-  }
-  return true;
+  return within(ledger, replicates, -2.0);
 }
 
 double probability_of_hit(const Outlook& outlook, const UnitPoint& point, int replicates) {
