@@ -68,7 +68,8 @@ void weigh_together(const Calibration& calibration,
   const Eigen::MatrixXd own = covariance(fitted, fitted);
   comparison.misfit = gap.dot(own.llt().solve(gap));
   const Eigen::VectorXd freedom = freedom_of(calibration.measurements, covariance.diagonal());
-  comparison.p = misfit_p(comparison.misfit, learnt, freedom(fitted), calibration.seed);
+  const Index taken = comparison.freedom > 0.0 ? learnt : 0;
+  comparison.p = misfit_p(comparison.misfit, taken, freedom(fitted), calibration.seed);
 }
 
 double rms(const Calibration& calibration,
@@ -183,7 +184,7 @@ std::string sentence_of(const Calibration& calibration,
 
 /// Whether the model fits, all measurements together.
 std::string whole_sentence(const Comparison& comparison) {
-  if (comparison.freedom <= 0.0) {
+  if (comparison.freedom <= 0.0 && comparison.p >= unlikely) {
     return "As many directions were learnt as measurements fitted: that the model fits says "
            "nothing.";
   }

@@ -42,7 +42,8 @@ struct Comparison {
   double misfit = 0.0;      ///< of the fitted ones, shared tolerances accounted for
   double freedom = 0.0;     ///< fitted measurements less learnt directions
   double p = 1.0;           ///< that a right model misses by so much, estimated errors accounted
-                            ///< for; 1 where nothing is left to test
+                            ///< for; without freedom that of a model that learnt nothing: such a
+                            ///< misfit is told, and that it fits says nothing
   double fitted_z = 0.0;    ///< root mean square
   double held_out_z = 0.0;  ///< NaN where none is held out
   std::vector<std::string> sentences;  ///< where it is off, or that it fits

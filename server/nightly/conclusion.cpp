@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "calibrator/comparison.hpp"
-#include "calibrator/diagnosis/chi_squared.hpp"
 #include "calibrator/misfit.hpp"
 #include "server/json/calibration_json.hpp"
 #include "server/json/fit_json.hpp"
@@ -43,11 +42,7 @@ struct Evidence {
 bool fits(const Calibration& study, const Fit& fit) {
   using calibrator::StopReason;
   if (fit.stop == StopReason::failed || fit.stop == StopReason::implausible) return false;
-  const calibrator::Comparison found = calibrator::compare(study, fit);
-  if (found.freedom > 0.0) return found.p >= chance;
-  // Nothing is left to test the model by; but what misses its own targets does not fit.
-  const auto fitted = std::ranges::count(study.measurements, Role::fit, &Measurement::role);
-  return calibrator::chi_squared_tail(found.misfit, static_cast<double>(fitted)) >= chance;
+  return calibrator::compare(study, fit).p >= chance;
 }
 
 Contender contender(const Calibration& study, const Fit& predicting, const Published& widths) {

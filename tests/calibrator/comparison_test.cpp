@@ -94,6 +94,11 @@ TEST_CASE("a tolerance that readings share hides no trend between them", "[calib
 
 TEST_CASE("as many parameters as measurements say nothing", "[calibrator]") {
   CHECK(says(compared({{0.05, 0.7, 0.7}}), "says nothing"));
+  // But a miss is one, however many were learnt.
+  const Comparison off = compared({{0.05, 0.7, 0.6}});
+  CHECK(off.p < 1e-6);
+  CHECK(says(off, "The model does not fit"));
+  CHECK_FALSE(says(off, "says nothing"));
 }
 
 TEST_CASE("a measurement held out is named as such and not counted", "[calibrator]") {
