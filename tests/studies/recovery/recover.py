@@ -169,6 +169,9 @@ if __name__ == "__main__":
     parser.add_argument("--methods", default="repose,cma_es,filter")
     parser.add_argument("--evaluations", type=int, default=40)
     args = parser.parse_args()
+    if args.case == "soybean" and "truth" in args.methods.split(","):
+        parser.error("--methods: the soybean's targets are measured, so that nobody knows their truth")
+    pathlib.Path(args.folder).mkdir(parents=True, exist_ok=True)
     log = pathlib.Path(args.folder) / f"{args.case}.jsonl"
     results = [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
     for seed in range(1, args.seeds + 1):
