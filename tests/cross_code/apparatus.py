@@ -251,9 +251,12 @@ class DrawDown(Apparatus):
         def floor(low, high):
             return plate((low, 0, 0), (high, 0, 0), (high, w, 0), (low, w, 0))
 
+        # LIGGGHTS stops where a facet is much longer than the period.
+        pieces = math.ceil(self.tall / (4 * w))
+        levels = [self.tall * i / pieces for i in range(pieces + 1)]
         return {"ends": [facet for x in (0.0, s["length"])
-                         for facet in plate((x, 0, 0), (x, w, 0), (x, w, self.tall),
-                                            (x, 0, self.tall))],
+                         for low, high in zip(levels, levels[1:])
+                         for facet in plate((x, 0, low), (x, w, low), (x, w, high), (x, 0, high))],
                 "floor": floor(0.0, left) + floor(right, s["length"]), "cover": floor(left, right)}
 
     def scene(self, code):
