@@ -287,6 +287,8 @@ double lift_of(const BodyLaw& law, double time) {
   return 0.0;
 }
 
+}  // namespace
+
 Material material_of(const ParameterSet& set, MaterialId id) {
   Material result{};
   for (const auto& field : material_fields) {
@@ -295,8 +297,6 @@ Material material_of(const ParameterSet& set, MaterialId id) {
   }
   return result;
 }
-
-}  // namespace
 
 ContactModel::ContactModel(const ParameterSet& parameters) {
   for (std::size_t i = 0; i < laws_.size(); ++i) {

@@ -50,6 +50,9 @@ struct BodyLaw {
 void apply(
     const PairLaw& law, Partner partner, ContactBlock& block, HistoryBlock history, double dt);
 
+/// A material's properties, SI; NaN where the set does not give them.
+Material material_of(const ParameterSet& set, MaterialId id);
+
 /// A parameter set bound for running.
 class ContactModel {
  public:

@@ -140,6 +140,7 @@ struct ExperimentInfo {
   std::string_view citation;
   std::span<const FieldInfo> settings;
   std::span<const ObservableInfo> observables;
+  std::string (*refusal)(const Trial& trial);  ///< why it would not begin; empty: it would
   Evaluation (*run)(const Trial& trial, const Run& run);
 };
 

@@ -79,30 +79,32 @@ std::string check(const ExperimentInfo& info, const Trial& trial) {
   return {};
 }
 
+GrainRadii grain_radii(const ParameterSet& parameters) {
+  const double diameter = material_of(parameters, MaterialId::grain).diameter;
+  const SizePopulation sizes = size_population(parameters);
+  const double least = std::cbrt(sizes.smallest);
+  const double most = std::cbrt(sizes.largest);
+  const auto shape = shape_of_grains(parameters);
+  if (!shape) return {0.5 * diameter * least, 0.5 * diameter * most};
+  const double scale = diameter / equivalent_diameter(*shape);
+  const auto thinnest = std::ranges::min_element(shape->members, {}, &ClumpMember::radius);
+  return {scale * thinnest->radius * least, scale * shape->bounding_radius * most};
+}
+
 Session::Session(const Trial& trial, const Run& run)
     : trial_(trial),
       run_(run),
       model_(trial.parameters),
       sizes_(size_population(trial.parameters)),
-      shape_(shape_of_grains(trial.parameters)) {
-  const double least = std::cbrt(sizes_.smallest);
-  const double most = std::cbrt(sizes_.largest);
-  const double mean = 0.5 * grain().diameter;
-  smallest_radius_ = mean * least;
-  largest_radius_ = mean * most;
-  if (!shape_) return;
-  const double scale = grain().diameter / equivalent_diameter(*shape_);
-  const auto thinnest = std::ranges::min_element(shape_->members, {}, &ClumpMember::radius);
-  smallest_radius_ = scale * thinnest->radius * least;
-  largest_radius_ = scale * shape_->bounding_radius * most;
-}
+      shape_(shape_of_grains(trial.parameters)),
+      radii_(grain_radii(trial.parameters)) {}
 
 double Session::grain_mass() const {
   return unit::pi / 6.0 * std::pow(grain().diameter, 3.0) * grain().density;
 }
 
 double Session::impact_time_at(double speed) const {
-  const GrainRow least = sphere(smallest_radius_, grain().density);
+  const GrainRow least = sphere(radii_.smallest, grain().density);
   const auto time = [&](MaterialId partner, double share) {
     const double modulus = model_.law(partner).elastic.modulus;
     return impact_time(share * mass(least), share * least.radius, modulus, speed);

@@ -29,6 +29,13 @@ struct Apparatus {
   bool closed = false;           ///< no grain may leave the room: one that does went through a wall
 };
 
+/// Radii of the grains that a parameter set describes, m.
+struct GrainRadii {
+  double smallest = 0.0;  ///< of the smallest sphere, be it a grain or a member of a clump
+  double largest = 0.0;   ///< of the sphere that holds the largest grain
+};
+GrainRadii grain_radii(const ParameterSet& parameters);
+
 class Session {
  public:
   Session(const Trial& trial, const Run& run);
@@ -39,10 +46,10 @@ class Session {
   [[nodiscard]] World& world() { return *world_; }
   [[nodiscard]] const Material& grain() const { return model_.material(MaterialId::grain); }
   /// Radius of the sphere that holds the largest grain, m.
-  [[nodiscard]] double largest_radius() const { return largest_radius_; }
+  [[nodiscard]] double largest_radius() const { return radii_.largest; }
   [[nodiscard]] std::uint64_t seed() const { return trial_.seed; }
   /// Rayleigh time of the smallest sphere, s.
-  [[nodiscard]] double rayleigh() const { return rayleigh_time(smallest_radius_, grain()); }
+  [[nodiscard]] double rayleigh() const { return rayleigh_time(radii_.smallest, grain()); }
   /// How long the shortest collision at that speed lasts, s.
   [[nodiscard]] double impact_time_at(double speed) const;
   /// Mass of the mean grain, kg.
@@ -94,8 +101,7 @@ class Session {
   ContactModel model_;
   SizePopulation sizes_;
   std::optional<ClumpShape> shape_;  ///< of every grain; none: spheres
-  double smallest_radius_;
-  double largest_radius_;
+  GrainRadii radii_;
   Apparatus apparatus_;
   std::optional<World> world_;
   std::optional<Failure> failure_;
@@ -125,6 +131,7 @@ std::string check(const ExperimentInfo& info, const Trial& trial);
 /// A catalogue entry from the experiment's file.
 template <class E>
 constexpr ExperimentInfo describe(std::span<const FieldInfo> settings,
+                                  std::string (*refusal)(const Trial&),
                                   Evaluation (*run)(const Trial&, const Run&)) {
   return {E::text.name,
           E::text.title,
@@ -133,6 +140,7 @@ constexpr ExperimentInfo describe(std::span<const FieldInfo> settings,
           E::text.citation,
           settings,
           E::observables,
+          refusal,
           run};
 }
 
@@ -143,39 +151,63 @@ concept Refuses = requires(const typename E::Settings& settings, double largest_
   { E::refuse(settings, largest_grain_diameter) } -> std::same_as<std::string>;
 };
 
-/// Runs a protocol: checks, settings, session, answer.
+/// A trial that was found in order: as its experiment's conditions leave it, all settings given.
 template <class E>
-Evaluation conduct(const Trial& trial, const Run& run) {
-  Evaluation evaluation{trial, {}, {}};
-  const ExperimentInfo& info = *find_experiment(E::text.name);
-  if (std::string problem = check(info, trial); !problem.empty()) {
-    evaluation.outcome = Failure{FailureKind::bad_input, std::move(problem), 0.0};
-    return evaluation;
-  }
+struct Checked {
+  Trial trial;
   typename E::Settings settings{};
+};
+
+/// Or the problem.
+template <class E>
+Result<Checked<E>, std::string> checked(const Trial& trial) {
+  const ExperimentInfo& info = *find_experiment(E::text.name);
+  if (std::string problem = check(info, trial); !problem.empty()) return Unexpected{problem};
+  Checked<E> result;
   const std::vector<double> values = resolved_settings(info, trial.experiment);
-  for (std::size_t i = 0; i < E::fields.size(); ++i) settings.*E::fields[i].member = values[i];
+  for (std::size_t i = 0; i < E::fields.size(); ++i) {
+    result.settings.*E::fields[i].member = values[i];
+  }
   Conditions conditions{};
   for (std::size_t i = 0; i < condition_fields.size(); ++i) {
     conditions.*condition_fields[i].member = values[E::fields.size() + i];
   }
-  const Trial here{amended(trial.parameters, conditions), trial.experiment, trial.seed};
-  if (std::string problem = check(info, here); !problem.empty()) {
-    evaluation.outcome = Failure{
-        FailureKind::bad_input, "under the experiment's conditions " + std::move(problem), 0.0};
-    return evaluation;
+  result.trial = {amended(trial.parameters, conditions), trial.experiment, trial.seed};
+  if (const std::string problem = check(info, result.trial); !problem.empty()) {
+    return Unexpected{"under the experiment's conditions " + problem};
+  }
+  return result;
+}
+
+/// Why the apparatus cannot work with grains of those parameters.
+template <class E>
+std::string refusal(const typename E::Settings& settings, const ParameterSet& parameters) {
+  if constexpr (Refuses<E>) return E::refuse(settings, 2.0 * grain_radii(parameters).largest);
+  return {};
+}
+
+/// Why a protocol would not begin; empty: it would.
+template <class E>
+std::string refusal(const Trial& trial) {
+  const auto question = checked<E>(trial);
+  return question ? refusal<E>(question->settings, question->trial.parameters) : question.error();
+}
+
+/// Runs a protocol: checks, settings, session, answer.
+template <class E>
+Evaluation conduct(const Trial& trial, const Run& run) {
+  const auto refused = [&](const std::string& problem) {
+    return Evaluation{trial, Failure{FailureKind::bad_input, problem, 0.0}, {}};
+  };
+  const auto question = checked<E>(trial);
+  if (!question) return refused(question.error());
+  const auto& [here, settings] = *question;
+  if (const std::string reason = refusal<E>(settings, here.parameters); !reason.empty()) {
+    return refused(reason);
   }
   Session session(here, run);
-  if constexpr (Refuses<E>) {
-    if (std::string reason = E::refuse(settings, 2.0 * session.largest_radius()); !reason.empty()) {
-      evaluation.outcome = Failure{FailureKind::bad_input, std::move(reason), 0.0};
-      return evaluation;
-    }
-  }
   const Readings readings = E::run(settings, session);
-  evaluation.effort = session.effort();
-  evaluation.outcome = outcome_of(readings, E::observables, session);
-  return evaluation;
+  return {trial, outcome_of(readings, E::observables, session), session.effort()};
 }
 
 }  // namespace repose::engine

@@ -233,6 +233,7 @@ constexpr auto settings = with_conditions(Compression::fields);
 
 }  // namespace
 
-constinit const ExperimentInfo compression = describe<Compression>(settings, conduct<Compression>);
+constinit const ExperimentInfo compression =
+    describe<Compression>(settings, refusal<Compression>, conduct<Compression>);
 
 }  // namespace repose::engine::experiments

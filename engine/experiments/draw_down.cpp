@@ -292,6 +292,7 @@ constexpr auto settings = with_conditions(DrawDown::fields);
 
 }  // namespace
 
-constinit const ExperimentInfo draw_down = describe<DrawDown>(settings, conduct<DrawDown>);
+constinit const ExperimentInfo draw_down =
+    describe<DrawDown>(settings, refusal<DrawDown>, conduct<DrawDown>);
 
 }  // namespace repose::engine::experiments

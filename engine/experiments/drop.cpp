@@ -108,6 +108,6 @@ constexpr auto settings = with_conditions(Drop::fields);
 
 }  // namespace
 
-constinit const ExperimentInfo drop = describe<Drop>(settings, conduct<Drop>);
+constinit const ExperimentInfo drop = describe<Drop>(settings, refusal<Drop>, conduct<Drop>);
 
 }  // namespace repose::engine::experiments

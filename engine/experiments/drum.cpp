@@ -242,6 +242,6 @@ constexpr auto settings = with_conditions(Drum::fields);
 
 }  // namespace
 
-constinit const ExperimentInfo drum = describe<Drum>(settings, conduct<Drum>);
+constinit const ExperimentInfo drum = describe<Drum>(settings, refusal<Drum>, conduct<Drum>);
 
 }  // namespace repose::engine::experiments

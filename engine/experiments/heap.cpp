@@ -216,6 +216,6 @@ constexpr auto settings = with_conditions(Heap::fields);
 
 }  // namespace
 
-constinit const ExperimentInfo heap = describe<Heap>(settings, conduct<Heap>);
+constinit const ExperimentInfo heap = describe<Heap>(settings, refusal<Heap>, conduct<Heap>);
 
 }  // namespace repose::engine::experiments

@@ -294,6 +294,7 @@ constexpr auto settings = with_conditions(Kettle::fields);
 
 }  // namespace
 
-constinit const ExperimentInfo kettle = describe<Kettle>(settings, conduct<Kettle>);
+constinit const ExperimentInfo kettle =
+    describe<Kettle>(settings, refusal<Kettle>, conduct<Kettle>);
 
 }  // namespace repose::engine::experiments

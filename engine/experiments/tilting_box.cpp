@@ -216,6 +216,7 @@ constexpr auto settings = with_conditions(TiltingBox::fields);
 
 }  // namespace
 
-constinit const ExperimentInfo tilting_box = describe<TiltingBox>(settings, conduct<TiltingBox>);
+constinit const ExperimentInfo tilting_box =
+    describe<TiltingBox>(settings, refusal<TiltingBox>, conduct<TiltingBox>);
 
 }  // namespace repose::engine::experiments
