@@ -53,7 +53,7 @@ void read_curve(const Place& place, Study& study);
 
 /// What only the whole document tells: ties that lead nowhere, materials that lack a property,
 /// constraints that nothing keeps, measurements that contradict each other or that a free parameter
-/// does not reach, nothing to fit, too little to spend.
+/// does not reach, apparatus that cannot work, nothing to fit, too little to spend.
 void check_study(const Place& document, const Study& study);
 
 }  // namespace repose::server

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 #include <span>
 #include <utility>
@@ -8,7 +9,9 @@
 #include "calibrator/misfit.hpp"
 #include "engine/catalogue.hpp"
 #include "engine/effects/sphere_clump.hpp"
+#include "engine/evaluate.hpp"
 #include "engine/shape_population.hpp"
+#include "engine/size_population.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/study.hpp"
 
@@ -178,6 +181,64 @@ void check_grains(const Place& document, const Study& study) {
   }
 }
 
+/// What is wrong with every parameter set that is looked at: the middle of the bounds, and each
+/// parameter at its ends. Told of the middle; empty where one of them is fine.
+std::string wrong_everywhere(
+    const calibrator::SearchSpace& space,
+    const std::function<std::string(const engine::ParameterSet&)>& problem_of) {
+  const calibrator::UnitPoint middle(space.dimensions(), 0.5);
+  const std::string problem = problem_of(space.at(middle));
+  for (std::size_t k = 0; k < middle.size() && !problem.empty(); ++k) {
+    for (const double end : {0.0, 1.0}) {
+      calibrator::UnitPoint point = middle;
+      point[k] = end;
+      if (problem_of(space.at(point)).empty()) return {};
+    }
+  }
+  return problem;
+}
+
+/// Effects that contradict each other about the grains. True if any do.
+bool contradict(const Place& document, const Study& study, const calibrator::SearchSpace& space) {
+  const std::string problem = wrong_everywhere(space, [](const engine::ParameterSet& parameters) {
+    const std::string sizes = engine::check_sizes(parameters);
+    return sizes.empty() ? engine::check_shape(parameters) : sizes;
+  });
+  if (problem.empty()) return false;
+  std::string pointer = "/fixed";
+  for (const auto& [key, claim] : study.claims) {
+    if (problem.find(key.field.substr(0, key.field.find('.'))) != std::string::npos) {
+      pointer = claim.pointer;
+    }
+  }
+  document.problems().add({pointer, problem, "several effects", "one of them"});
+  return true;
+}
+
+/// Experiments that no parameter set would let begin. Only of a study without another problem.
+void check_apparatus(const Place& document, const Study& study) {
+  if (!document.problems().empty()) return;
+  const calibrator::SearchSpace space(study.calibration);
+  if (contradict(document, study, space)) return;
+  const auto& all = study.calibration.measurements;
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    engine::Experiment experiment = all[j].experiment;
+    if (calibrator::Suite(std::span(all).first(j)).place_of(experiment)) continue;
+    experiment.fidelity = study.calibration.budget.fidelity;
+    const std::string problem =
+        wrong_everywhere(space, [&](const engine::ParameterSet& parameters) {
+          return engine::refusal({parameters, experiment, study.calibration.seed});
+        });
+    if (problem.empty()) continue;
+    const bool as_it_comes = experiment.settings.empty();
+    document.problems().add(
+        {as_it_comes ? study.measured_at[j] : pointer_to(study.measured_at[j], "settings"),
+         experiment.name + ": " + problem,
+         as_it_comes ? "the apparatus as it comes" : "these settings",
+         "an apparatus that works with the study's grains"});
+  }
+}
+
 }  // namespace
 
 void check_study(const Place& document, const Study& study) {
@@ -211,6 +272,7 @@ void check_study(const Place& document, const Study& study) {
                              std::to_string(fewest) + " or more"});
   }
   check_constraints(document, study);
+  check_apparatus(document, study);
 }
 
 }  // namespace repose::server

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 #include <string>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
+#include "calibrator/search_space.hpp"
 #include "engine/catalogue.hpp"
+#include "engine/evaluate.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/text.hpp"
 
@@ -75,20 +79,42 @@ class Author {
   std::mt19937_64 random_;
 };
 
-/// Of the experiment with that number, so that no two contradict each other.
-calibrator::Measurement any_measurement(Author& author, std::size_t experiment) {
-  const auto experiments = engine::experiment_catalogue();
-  const engine::ExperimentInfo& info = experiments[experiment % experiments.size()];
-  const engine::ObservableInfo& seen = info.observables[author.below(info.observables.size())];
-  calibrator::Measurement measurement;
-  measurement.experiment.name = info.name;
+/// Whether values anywhere within the bounds go with those of other effects: grains have one shape
+/// and one distribution of sizes, and moisture takes what it changes out of its bounds.
+bool goes_with_others(const std::string& name) {
+  const std::string effect = name.substr(0, name.find('.'));
+  return effect != "grain_shape" && effect != "sphere_clump" && !effect.ends_with("_sizes") &&
+         !effect.starts_with("moisture_");
+}
+
+/// Settings that the experiment would work with, for grains of those parameters.
+std::map<std::string, double> any_settings(Author& author,
+                                           const engine::ExperimentInfo& info,
+                                           const engine::ParameterSet& parameters) {
+  std::map<std::string, double> settings;
   for (const engine::FieldInfo& field : info.settings) {
     if (author.chance()) continue;
     const double value = field.choices.empty()
                              ? author.within(field, author.unit_like(field.unit))
                              : static_cast<double>(author.below(field.choices.size()));
-    measurement.experiment.settings[std::string(field.name)] = value;
+    auto with = settings;
+    with[std::string(field.name)] = value;
+    const engine::Experiment experiment{std::string(info.name), engine::Fidelity::draft, with};
+    if (engine::refusal({parameters, experiment, 1}).empty()) settings = std::move(with);
   }
+  return settings;
+}
+
+/// Of the experiment with that number, so that no two contradict each other.
+calibrator::Measurement any_measurement(Author& author,
+                                        std::size_t experiment,
+                                        const engine::ParameterSet& parameters) {
+  const auto experiments = engine::experiment_catalogue();
+  const engine::ExperimentInfo& info = experiments[experiment % experiments.size()];
+  const engine::ObservableInfo& seen = info.observables[author.below(info.observables.size())];
+  calibrator::Measurement measurement;
+  measurement.experiment.name = info.name;
+  measurement.experiment.settings = any_settings(author, info, parameters);
   measurement.observable = seen.name;
   measurement.unit = author.unit_like(seen.unit);
   measurement.value = author.within(0.1, 100.0) * measurement.unit.factor;
@@ -105,19 +131,22 @@ Calibration any_calibration(std::uint64_t seed) {
   const std::vector<engine::MaterialId> pair{engine::MaterialId::grain, engine::MaterialId::wall};
   for (const std::string& name : engine::parameter_names()) {
     const engine::ParameterInfo& info = *engine::find_parameter(name);
+    if (!goes_with_others(name)) continue;
+    engine::FieldInfo field = *info.field;
+    if (name == "material.diameter") field.upper = 0.002;  // m; the apparatus has room for it
     for (const engine::MaterialId material : pair) {
       if (info.scope == engine::Scope::global && material == pair.back()) continue;  // is one
       std::vector<engine::MaterialId> between;
       if (info.scope != engine::Scope::global) between.push_back(material);
       if (info.scope == engine::Scope::pair) between.push_back(engine::MaterialId::grain);
       const auto key = engine::make_key(name, between);
-      const engine::Unit unit = author.unit_like(info.field->unit);
+      const engine::Unit unit = author.unit_like(field.unit);
       if (author.chance()) {
-        result.fixed.set(key, author.within(*info.field, unit));
+        result.fixed.set(key, author.within(field, unit));
         continue;
       }
-      double lower = author.within(*info.field, unit);
-      double upper = author.within(*info.field, unit);
+      double lower = author.within(field, unit);
+      double upper = author.within(field, unit);
       if (lower > upper) std::swap(lower, upper);
       const bool log = author.chance() && lower > 0.0;
       const auto scale = log ? calibrator::Scale::log : calibrator::Scale::linear;
@@ -129,10 +158,12 @@ Calibration any_calibration(std::uint64_t seed) {
     if (author.chance()) first.prior = calibrator::Prior{first.lower, 0.3 * first.unit.factor};
     result.constraints.push_back({{{first.key, 1.0}}, first.upper, first.unit});
   }
+  const calibrator::SearchSpace space(result);
+  const auto middle = space.at(calibrator::UnitPoint(space.dimensions(), 0.5));
   for (std::size_t i = 0; i < 4; ++i) {
-    result.measurements.push_back(any_measurement(author, seed + i));
+    result.measurements.push_back(any_measurement(author, seed + i, middle));
   }
-  calibrator::Measurement point = any_measurement(author, seed + 4);
+  calibrator::Measurement point = any_measurement(author, seed + 4, middle);
   point.observable = "dynamic_angle";
   point.experiment = {"drum", {}, {{"speed", 1.0}}};
   point.unit = engine::unit::degree;
