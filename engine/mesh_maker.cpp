@@ -9,6 +9,7 @@
 
 #include "engine/mesh.hpp"
 #include "engine/mesh_weld.hpp"
+#include "engine/unit.hpp"
 
 namespace repose::engine {
 
@@ -42,32 +43,24 @@ Box box_about(std::span<const Triangle> facets, double scale) {
   return {scale * box.low, scale * box.high};
 }
 
-/// Without the zeros at its end.
-std::string number(double value) {
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.ends_with('.')) text.pop_back();
-  return text;
-}
-
 std::optional<MeshError> check_size(const Box& box, const MeshOptions& options) {
   const Vec3 size = box.high - box.low;
   const double across = std::max({size.x, size.y, size.z});
   if (across > largest_mesh) {
     return MeshError{MeshFault::wrong_unit,
                      0,
-                     "the mesh is " + number(across) +
+                     "the mesh is " + short_number(across) +
                          " m across: if its lengths are in mm, its "
                          "scale is 0.001, not " +
-                         number(options.scale)};
+                         short_number(options.scale)};
   }
   if (across < options.grain_diameter) {
-    return MeshError{MeshFault::wrong_unit,
-                     0,
-                     "the mesh is " + number(1e3 * across) + " mm across, less than a grain of " +
-                         number(1e3 * options.grain_diameter) +
-                         " mm: if its lengths are in m, its scale is 1, not " +
-                         number(options.scale)};
+    return MeshError{
+        MeshFault::wrong_unit,
+        0,
+        "the mesh is " + short_number(1e3 * across) + " mm across, less than a grain of " +
+            short_number(1e3 * options.grain_diameter) +
+            " mm: if its lengths are in m, its scale is 1, not " + short_number(options.scale)};
   }
   return std::nullopt;
 }

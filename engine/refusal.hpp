@@ -20,7 +20,4 @@ std::string too_short(std::initializer_list<LeastLength> lengths, double largest
 /// Two refusals, either of which may be empty, as one.
 std::string both(const std::string& one, const std::string& other);
 
-/// A length as it is written in a refusal: "19.5 mm".
-std::string millimetres(double length);
-
 }  // namespace repose::engine

@@ -20,22 +20,10 @@ constexpr double steps_per_impact = 6.0;
 /// Overlap over radius beyond which the run is not physics. Soft grains reach 0.2 on hard impact.
 constexpr double absurd_overlap = 0.7;
 
-std::string number(double value) {
-  std::string text = std::to_string(value);
-  if (std::abs(value) < 1e-3 || std::abs(value) >= 1e6) {
-    // std::to_string has no exponents; three figures are enough for a message.
-    const int exponent =
-        value == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value))));
-    text = std::to_string(value / std::pow(10.0, exponent));
-    text = text.substr(0, text.find('.') + 3) + "e" + std::to_string(exponent);
-  }
-  return text;
-}
-
 std::string out_of_bounds(std::string_view name, double value, const FieldInfo& field) {
   if (value >= field.lower && value <= field.upper) return {};
-  return std::string(name) + " = " + number(value) + " (SI) must lie in " + number(field.lower) +
-         " to " + number(field.upper);
+  return std::string(name) + " = " + quantity_text(value, field.unit) + " must lie in " +
+         quantity_text(field.lower, field.unit) + " to " + quantity_text(field.upper, field.unit);
 }
 
 std::string check_parameters(const ParameterSet& parameters) {
@@ -119,10 +107,10 @@ bool Session::set_up(const Apparatus& apparatus) {
   const double time_step = apparatus.time_step_share * rayleigh();
   if (time_step > stable) {
     return fail(FailureKind::time_step_too_large,
-                "time_step of " + number(apparatus.time_step_share) +
-                    " Rayleigh times is not stable; at most " + number(stable / rayleigh()) +
-                    " (half the Rayleigh time, and " + number(steps_per_impact) +
-                    " steps to a collision at " + number(apparatus.fastest) + " m/s)");
+                "time_step of " + short_number(apparatus.time_step_share) +
+                    " Rayleigh times is not stable; at most " + short_number(stable / rayleigh()) +
+                    " (half the Rayleigh time, and " + short_number(steps_per_impact) +
+                    " steps to a collision at " + short_number(apparatus.fastest) + " m/s)");
   }
   world_.emplace(
       model_, WorldOptions{.time_step = time_step, .period = apparatus.period, .team = run_.team});
@@ -202,7 +190,7 @@ bool Session::check() {
   largest_overlap_ = std::max(largest_overlap_, overlap);
   if (overlap > absurd_overlap) {
     return fail(FailureKind::unstable,
-                "an overlap of " + number(overlap) +
+                "an overlap of " + short_number(overlap) +
                     " radii: the time step is too large or the "
                     "grains are too soft for these speeds");
   }
@@ -242,8 +230,9 @@ bool Session::until(const std::function<bool()>& condition,
 }
 
 bool Session::rest(double limit) {
-  return comes_to_rest(limit) || fail(FailureKind::did_not_rest,
-                                      "the grains were still moving after " + number(limit) + " s");
+  return comes_to_rest(limit) ||
+         fail(FailureKind::did_not_rest,
+              "the grains were still moving after " + short_number(limit) + " s");
 }
 
 bool Session::comes_to_rest(double limit) {

@@ -1,8 +1,11 @@
 #include "engine/unit.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 
-namespace repose::engine::unit {
+namespace repose::engine {
+namespace unit {
 
 std::span<const Unit> all() {
   static constexpr std::array units{
@@ -49,4 +52,18 @@ std::optional<Unit> find(std::string_view symbol) {
   return *found;
 }
 
-}  // namespace repose::engine::unit
+}  // namespace unit
+
+std::string short_number(double value, int figures) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(
+      text.data(), text.data() + text.size(), value, std::chars_format::general, figures);
+  return {text.data(), end.ptr};
+}
+
+std::string quantity_text(double value, const Unit& unit) {
+  const std::string text = short_number(value / unit.factor, 4);
+  return unit.symbol == "1" ? text : text + " " + std::string(unit.symbol);
+}
+
+}  // namespace repose::engine

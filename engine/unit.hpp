@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace repose::engine {
@@ -71,4 +72,11 @@ std::span<const Unit> all();
 std::optional<Unit> find(std::string_view symbol);
 
 }  // namespace unit
+
+/// In at most that many figures, without zeros at the end: "0.25", "1.3e+06".
+std::string short_number(double value, int figures = 6);
+
+/// A value, SI, in a unit: "19.5 mm".
+std::string quantity_text(double value, const Unit& unit);
+
 }  // namespace repose::engine

@@ -197,8 +197,8 @@ Readings Compression::run(const Settings& s, Session& session) {
           -s.speed,
           flattest * top / s.speed,
           [most](double stress, double) { return stress >= most; },
-          "the stress did not reach " + std::to_string(1e-3 * most) +
-              " kPa before the bed was half as deep: the grains are too soft for `stress`")) {
+          "the stress did not reach " + quantity_text(most, unit::kilopascal) +
+              " before the bed was half as deep: the grains are too soft for `stress`")) {
     return {};
   }
   session.stage("pressed");

@@ -231,7 +231,7 @@ Reading slope(const DrawDown::Settings& s, Session& session, double side) {
   // Where grains slip and roll with ease, the foot of the slope stands away from the slot.
   const LineFit line = line_through(covered);
   if (const double off = roughness(covered, line); off > d) {
-    return Unexpected{"the surface beside the slot is " + millimetres(off) +
+    return Unexpected{"the surface beside the slot is " + quantity_text(off, unit::millimetre) +
                       " off a straight line, more than a grain"};
   }
   return side * line.slope;

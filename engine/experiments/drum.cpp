@@ -116,9 +116,10 @@ std::string Drum::refuse(const Settings& s, double largest_grain_diameter) {
   const double fastest = std::sqrt(gravity / radius);
   std::string speed;
   if (s.speed >= fastest) {
-    const double rpm = unit::revolution_per_minute.factor;
-    speed = "speed = " + std::to_string(s.speed / rpm) + " rpm centrifuges: it must be below " +
-            std::to_string(fastest / rpm) + " rpm, where the mantle's acceleration is gravity's";
+    speed = "speed = " + quantity_text(s.speed, unit::revolution_per_minute) +
+            " centrifuges: it must be below " +
+            quantity_text(fastest, unit::revolution_per_minute) +
+            ", where the mantle's acceleration is gravity's";
   }
   return both(too_short({{"diameter", s.diameter, 10.0}, {"length", s.length, 3.0}},
                         largest_grain_diameter),
@@ -205,7 +206,7 @@ Readings Drum::read(const Settings& s, Session& session) {
   if (grip / looks < 0.5) {
     session.fail(FailureKind::not_observed,
                  "the bed slides as a whole: grains at the mantle move at " +
-                     std::to_string(100.0 * grip / looks) + " % of its speed");
+                     quantity_text(grip / looks, unit::percent) + " of its speed");
     return {};
   }
   return std::vector<Reading>{angles / looks};

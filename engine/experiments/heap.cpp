@@ -172,13 +172,13 @@ Readings Heap::read(const Settings& s, Session& session) {
   const double rise = -line.slope * (to - from);
   if (rise < 0.5 * d) {
     session.fail(FailureKind::not_observed,
-                 "no heap formed: the surface rises by " + millimetres(rise) +
+                 "no heap formed: the surface rises by " + quantity_text(rise, unit::millimetre) +
                      " from 80 to 20 % of the radius, less than half a grain");
     return {};
   }
   if (const double off = roughness(surface, line); off > d) {
     session.fail(FailureKind::not_observed,
-                 "the heap has no slope: its surface is " + millimetres(off) +
+                 "the heap has no slope: its surface is " + quantity_text(off, unit::millimetre) +
                      " off a straight line, more than a grain");
     return {};
   }

@@ -228,8 +228,9 @@ bool Kettle::pour_from_hopper(const Settings& s, Session& session) {
 std::string Kettle::refuse(const Settings& s, double largest_grain_diameter) {
   std::string wide;
   if (s.opening > s.diameter) {
-    wide = "opening = " + millimetres(s.opening) +
-           " pours beside the kettle: it must be at most the diameter, " + millimetres(s.diameter);
+    wide = "opening = " + quantity_text(s.opening, unit::millimetre) +
+           " pours beside the kettle: it must be at most the diameter, " +
+           quantity_text(s.diameter, unit::millimetre);
   }
   return both(
       too_short(

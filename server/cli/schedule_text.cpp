@@ -1,5 +1,6 @@
 #include "server/cli/schedule_text.hpp"
 
+#include "engine/unit.hpp"
 #include "server/cli/text_table.hpp"
 #include "server/json/place.hpp"
 #include "server/json/text.hpp"
@@ -51,7 +52,7 @@ std::string fit_text(const Json& fit) {
       between += (between.empty() ? ":" : "-") + material.get<std::string>();
     }
     const auto number = [](const Json& value) {
-      return value.is_number() ? short_number(value.get<double>()) : std::string("-");
+      return value.is_number() ? engine::short_number(value.get<double>()) : std::string("-");
     };
     const Json interval = member(parameter, "interval");
     table.row({name + between,

@@ -7,6 +7,7 @@
 
 #include "engine/catalogue.hpp"
 #include "engine/material.hpp"
+#include "engine/unit.hpp"
 #include "server/json/place.hpp"
 
 namespace repose::server {
@@ -76,7 +77,7 @@ DemModel dem_model(const ParameterSet& set) {
     if (info != nullptr && value == info->field->null_value) continue;
     if (key.field == spring_rolling) model.rolling_spring = true;
     if (std::ranges::find(said, key.field) != said.end()) continue;
-    model.unsaid.push_back(engine::to_string(key) + " = " + short_number(value) + " (SI)");
+    model.unsaid.push_back(engine::to_string(key) + " = " + engine::short_number(value) + " (SI)");
   }
   return model;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/catalogue.hpp"
+#include "engine/unit.hpp"
 #include "server/json/codec.hpp"
 
 namespace repose::server {
@@ -20,8 +21,8 @@ constexpr const char* how_made = "Generated from the catalogue by `repose schema
 std::string with_bounds(const FieldInfo& field) {
   std::string text(field.meaning);
   if (std::isnan(field.lower) || std::isnan(field.upper) || !field.choices.empty()) return text;
-  text += "; " + short_number(field.lower / field.unit.factor) + " to " +
-          short_number(field.upper / field.unit.factor);
+  text += "; " + engine::short_number(field.lower / field.unit.factor) + " to " +
+          engine::short_number(field.upper / field.unit.factor);
   if (field.unit.symbol != "1") text += " " + std::string(field.unit.symbol);
   return text;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/unit.hpp"
 namespace repose::server {
 
 using engine::FieldInfo;
@@ -14,13 +15,13 @@ using engine::Unit;
 namespace {
 
 std::string with_unit(double value, const Unit& unit) {
-  std::string text = short_number(value);
+  std::string text = engine::short_number(value);
   if (unit.symbol != "1") text += " " + std::string(unit.symbol);
   return text;
 }
 
 std::string bounds_text(const FieldInfo& field, const Unit& unit) {
-  const std::string lower = short_number(field.lower / unit.factor);
+  const std::string lower = engine::short_number(field.lower / unit.factor);
   const std::string upper = with_unit(field.upper / unit.factor, unit);
   if (std::isnan(field.upper)) return "at least " + with_unit(field.lower / unit.factor, unit);
   if (std::isnan(field.lower)) return "at most " + upper;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -87,12 +86,6 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
 }
 std::string did_you_mean(std::string_view word, std::span<const std::string> names) {
   return suggestion(word, names);
-}
-
-std::string short_number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
 }
 
 std::string Place::found() const {

@@ -79,7 +79,4 @@ std::string listed(std::span<const std::string> names);
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> names);
 std::string did_you_mean(std::string_view word, std::span<const std::string> names);
 
-/// Six digits at most: for messages, not for documents.
-std::string short_number(double value);
-
 }  // namespace repose::server

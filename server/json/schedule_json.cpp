@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/unit.hpp"
 #include "server/json/calibration_json.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/place.hpp"
@@ -181,7 +182,7 @@ std::vector<std::int64_t> parse_ids(std::string_view text) {
 std::string name_of(const calibrator::Measurement& measurement) {
   std::string name = measurement.experiment.name + "." + measurement.observable;
   for (const auto& [setting, value] : measurement.experiment.settings) {
-    name += " " + setting + "=" + short_number(value);
+    name += " " + setting + "=" + engine::short_number(value);
   }
   return name;
 }

@@ -12,6 +12,7 @@
 #include "engine/evaluate.hpp"
 #include "engine/shape_population.hpp"
 #include "engine/size_population.hpp"
+#include "engine/unit.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/study.hpp"
 
@@ -89,7 +90,7 @@ void check_reach(const Study::PlacedTie& placed, const Study& study) {
   const double low = std::min(placed.tie.factor * from, placed.tie.factor * to);
   const double high = std::max(placed.tie.factor * from, placed.tie.factor * to);
   const std::string what = engine::to_string(placed.tie.key) + " (factor " +
-                           short_number(placed.tie.factor) + " x " +
+                           engine::short_number(placed.tie.factor) + " x " +
                            engine::to_string(placed.tie.to) + ")";
   const engine::FieldInfo& field = *info->field;
   if (within_bounds(factor, high, field.unit, field, what)) {
@@ -134,9 +135,10 @@ void check_contradictions(const Place& document, const Study& study) {
       document.problems().add(
           {pointer_to(study.measured_at[j], "value"),
            "this contradicts " + study.measured_at[i] + ": the same " + all[j].observable + ", " +
-               short_number(apart) + " standard errors apart",
-           short_number(all[j].value / all[j].unit.factor),
-           "within 5 standard errors of " + short_number(all[i].value / all[j].unit.factor) +
+               engine::short_number(apart) + " standard errors apart",
+           engine::short_number(all[j].value / all[j].unit.factor),
+           "within 5 standard errors of " +
+               engine::short_number(all[i].value / all[j].unit.factor) +
                ", a larger standard_error, or settings that tell the two apart"});
     }
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/catalogue.hpp"
+#include "engine/unit.hpp"
 #include "server/json/codec.hpp"
 #include "server/json/read_key.hpp"
 #include "server/json/study.hpp"
@@ -54,7 +55,7 @@ void read_fixed_one(const Place& place, Study& study) {
 bool in_order(const calibrator::FreeParameter& free, const Place& lower) {
   if (!(free.lower < free.upper)) {
     lower.complain("the lower bound must be below the upper one",
-                   "less than " + short_number(free.upper / free.unit.factor));
+                   "less than " + engine::short_number(free.upper / free.unit.factor));
     return false;
   }
   if (free.scale == calibrator::Scale::log && !(free.lower > 0.0)) {
@@ -84,8 +85,8 @@ std::optional<calibrator::Prior> read_prior(const Place& place,
   }
   if (*mean < free.lower || *mean > free.upper) {
     mean_place.complain("the prior's mean lies outside the bounds of the search",
-                        short_number(free.lower / free.unit.factor) + " to " +
-                            short_number(free.upper / free.unit.factor));
+                        engine::short_number(free.lower / free.unit.factor) + " to " +
+                            engine::short_number(free.upper / free.unit.factor));
     return std::nullopt;
   }
   return calibrator::Prior{*mean, *deviation * free.unit.factor};

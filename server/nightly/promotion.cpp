@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/unit.hpp"
 #include "server/json/place.hpp"
 
 namespace repose::server {
@@ -43,13 +44,13 @@ Promotion judge(const Contender& candidate, const Contender& incumbent) {
   if (!candidate.fits) return {false, "the new fit misses its measurements by more than chance"};
   const Residual own = error_of(candidate.held_out);
   const Residual other = error_of(incumbent.held_out);
-  const std::string errors =
-      short_number(own.z) + " against " + short_number(other.z) + " standard errors";
+  const std::string errors = engine::short_number(own.z) + " against " +
+                             engine::short_number(other.z) + " standard errors";
   if (!(own.z <= other.z + std::hypot(own.standard_error, other.standard_error))) {
     return {false, "its error is worse: " + errors};
   }
   const double ratio = width_ratio(candidate, incumbent);
-  const std::string widths = short_number(ratio) + " times as wide";
+  const std::string widths = engine::short_number(ratio) + " times as wide";
   if (!(ratio <= 1.0 + width_slack)) return {false, "its intervals are wider: " + widths};
   return {true, "its error is not worse (" + errors + ") and its intervals are " + widths};
 }
