@@ -77,10 +77,13 @@ SurfaceProfile ring_profile(const World& world, const Places& places) {
   return mean_of(tops, places);
 }
 
-SurfaceProfile straight_profile(const World& world, const Places& places) {
+SurfaceProfile straight_profile(const World& world,
+                                const Places& places,
+                                const std::function<bool(const GrainRow&)>& of_bed) {
   const double width = world.period().y;
   std::vector<double> tops = bare_points(places);
   for (const GrainRow& g : world.grains().rows) {
+    if (of_bed && !of_bed(g)) continue;
     raise(tops, g, g.x, places, [&g, width](double x, double share) {
       return Vec3{x - g.x, std::remainder(share * width - g.y, width), 0.0};
     });

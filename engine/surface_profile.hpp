@@ -1,6 +1,7 @@
 /// Surface profile: how high a bed stands, place by place along a slope.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "engine/line_fit.hpp"
@@ -31,8 +32,11 @@ SurfaceProfile ring_profile(const World& world, const Places& places);
 
 /// Along x: the mean, over points along a periodic y, of the top of the uppermost grain above the
 /// point: what an upright laser beam would meet. No grain moves it by more than its share of the
-/// points, and a place with few grains is not read too low.
-SurfaceProfile straight_profile(const World& world, const Places& places);
+/// points, and a place with few grains is not read too low. Of the grains of the bed alone, where
+/// there are others.
+SurfaceProfile straight_profile(const World& world,
+                                const Places& places,
+                                const std::function<bool(const GrainRow&)>& of_bed = {});
 
 /// The places that are covered at half of their points or more.
 SurfaceProfile covered_places(const SurfaceProfile& profile);

@@ -42,7 +42,8 @@ struct Drum {
       .procedure =
           "The drum is filled with a bed at rest and turned. After 0.35 turns and at least a "
           "second a straight line is laid through the surface over the middle 55 % of the radius, "
-          "again and again; the angle is their mean.",
+          "again and again; the angle is their mean. Grains that hang from the mantle overhead "
+          "are not of the surface.",
       .citation = "Mellmann 2001, Powder Technology 118, 251-270",
   };
   static constexpr std::array fields{
@@ -183,12 +184,17 @@ Readings Drum::read(const Settings& s, Session& session) {
   constexpr double every = 0.01;  // s
   const double radius = 0.5 * s.diameter;
   const Places middle{.from = -0.55 * radius, .to = 0.55 * radius, .count = 24, .points = 24};
+  const double rib = session.grain().diameter;
+  // Overhead, what touches the mantle or a rib hangs there.
+  const auto of_bed = [radius, rib](const GrainRow& g) {
+    return g.z < radius || radius - std::hypot(g.x, g.z - radius) > rib + g.radius;
+  };
   double angles = 0.0, grip = 0.0, bare = 0.0;
   int looks = 0;
   const double end = session.world().time() + s.seconds;
   while (session.world().time() < end) {
     if (!session.run_for(every)) return {};
-    const SurfaceProfile surface = straight_profile(session.world(), middle);
+    const SurfaceProfile surface = straight_profile(session.world(), middle, of_bed);
     const SurfaceProfile covered = covered_places(surface);
     bare +=
         static_cast<double>(surface.size() - covered.size()) / static_cast<double>(surface.size());

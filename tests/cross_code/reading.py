@@ -128,9 +128,15 @@ def heap(grains, s):
 
 
 def drum(frames, s):
-    """Of frames every hundredth of a second while the bed flows."""
-    reach = 0.55 * 0.5 * s["diameter"]
-    slopes = [line(surface_along_x(grains, 0.5 * s["grain"], s["length"], -reach, reach, 24, 24))[0]
+    """Of frames every hundredth of a second while the bed flows; what hangs overhead is left out."""
+    mantle, grain = 0.5 * s["diameter"], s["grain"]
+    reach = 0.55 * mantle
+
+    def of_bed(x, z):
+        return z < mantle or mantle - math.hypot(x, z - mantle) > 1.5 * grain
+
+    slopes = [line(surface_along_x({n: g for n, g in grains.items() if of_bed(g[0], g[2])},
+                                   0.5 * grain, s["length"], -reach, reach, 24, 24))[0]
               for _, grains in frames]
     return {"dynamic_angle": sum(map(degrees, map(abs, slopes))) / len(slopes)}
 

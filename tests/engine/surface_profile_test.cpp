@@ -80,6 +80,14 @@ TEST_CASE("of grains above each other the uppermost is the surface", "[engine]")
   CHECK(p[0].height == Approx(0.05 + radius));
 }
 
+TEST_CASE("grains that are not of the bed do not make its surface", "[engine]") {
+  const World world = bed({{0.01, 0.02, 0.05}, {0.01, 0.02, 0.09}});
+  const SurfaceProfile p = straight_profile(world,
+                                            {.from = 0.009, .to = 0.011, .count = 1, .points = 1},
+                                            [](const GrainRow& g) { return g.z < 0.07; });
+  CHECK(p[0].height == Approx(0.05 + radius));
+}
+
 TEST_CASE("the line through a slope of grains has its slope", "[engine]") {
   for (const double slope : {0.0, 0.4, -0.7}) {
     CAPTURE(slope);
