@@ -116,7 +116,8 @@ def heap(grains, s):
     tops = [[None] * sectors for _ in range(rings)]
     for x, y, z, _ in grains.values():
         ring = math.floor((math.hypot(x, y) - low) / (high - low) * rings)
-        if 0 <= ring < rings:
+        hangs = z > s["fill"]  # in the cylinder: the heap is lower
+        if 0 <= ring < rings and not hangs:
             share = math.atan2(y, x) / (2 * math.pi) + 0.5
             sector, top = min(int(share * sectors), sectors - 1), z + 0.5 * s["grain"]
             tops[ring][sector] = max(top, tops[ring][sector] or top)

@@ -36,6 +36,23 @@ TEST_CASE("a filling too small for its disc is no heap, and it says so", "[engin
   CHECK_THAT(failure.message, Contains("no grain fell off"));
 }
 
+TEST_CASE(
+    "the few grains that stick in the cylinder are carried off, a filling that sticks is told",
+    "[engine]") {
+  // J/m2: a grain hangs on a wall by four times its weight, the filling by forty.
+  const auto sticky = [](double work) {
+    Trial t = small_heap();
+    for (const MaterialId partner : {MaterialId::grain, MaterialId::wall}) {
+      t.parameters.set({"jkr_adhesion.work", {MaterialId::grain, partner}}, work);
+    }
+    return evaluate(t);
+  };
+  const Evaluation few = sticky(0.5);
+  CHECK(value_in(few, 0) > 0.0);
+  CHECK(few.effort.grains < few.effort.inserted);
+  CHECK_THAT(failure_in(sticky(5.0)).message, Contains("still hang in it: "));
+}
+
 TEST_CASE("a cylinder that does not fit its disc or its grains is refused", "[engine]") {
   for (const auto& [name, value] : {std::pair{"cylinder_diameter", 0.06},
                                     std::pair{"cylinder_diameter", 0.02},
