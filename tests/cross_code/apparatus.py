@@ -343,13 +343,13 @@ class Drum(Apparatus):
                 + self.dump(every=steps(0.01)) + f"run {steps(s['seconds'])}")
 
     def read(self, frames, _text):
-        return reading.drum(frames[1:], self.s)
+        return reading.drum(frames[1:], self.s, 0.0)
 
     def read_frames(self, frames):
         end = frames[-1][0]
         flowing = [f for f, after in zip(frames, frames[1:] + [(math.inf, {})])
                    if f[0] > end - self.s["seconds"] + 1e-3 and after[0] - f[0] > 1e-3]
-        return reading.drum(flowing, self.s)
+        return reading.drum(flowing, self.s, 0.5 * self.s["diameter"])
 
 
 class Compression(Apparatus):

@@ -230,7 +230,7 @@ def drum(scene):
                                             rotationAxis=(0, 1, 0), angularVelocity=s["speed"],
                                             ids=mantle)]
     scene.run(max(1.0, 0.35 * 2 * math.pi / s["speed"]))
-    return reading.drum(scene.watch(steps(0.01), scene.frame, s["seconds"]), s)
+    return reading.drum(scene.watch(steps(0.01), scene.frame, s["seconds"]), s, 0.0)
 
 
 def compression(scene):

@@ -128,13 +128,14 @@ def heap(grains, s):
     return {"heap_angle": degrees(-line(points)[0])}
 
 
-def drum(frames, s):
-    """Of frames every hundredth of a second while the bed flows; what hangs overhead is left out."""
+def drum(frames, s, axis):
+    """Of frames every hundredth of a second while the bed flows; what hangs overhead is left out.
+    axis: its height in them."""
     mantle, grain = 0.5 * s["diameter"], s["grain"]
     reach = 0.55 * mantle
 
     def of_bed(x, z):
-        return z < mantle or mantle - math.hypot(x, z - mantle) > 1.5 * grain
+        return z < axis or mantle - math.hypot(x, z - axis) > 1.5 * grain
 
     slopes = [line(surface_along_x({n: g for n, g in grains.items() if of_bed(g[0], g[2])},
                                    0.5 * grain, s["length"], -reach, reach, 24, 24))[0]
