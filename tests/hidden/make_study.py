@@ -68,23 +68,24 @@ class Laboratory:
             print(f"  yade stopped and is left out: {done.stderr[-500:]}", file=sys.stderr)
         return json.loads(told[0].removeprefix("ANSWER ")) if told else {}
 
-    def fills(self, experiment, settings, count):
-        """So many fills that were read; a seed that the code cannot fill by is passed over."""
+    def fills(self, experiment, observable, settings, count):
+        """So many readings; a seed that the code cannot fill by, or that left nothing to read, is
+        passed over."""
         found, seed = [], 0
         while len(found) < count:
             seed += 1
             if seed > 5 * count:
-                sys.exit(f"{experiment} {settings}: {len(found)} readings of {5 * count} fills")
-            answer = self.read(experiment, settings, seed)
-            if answer:
-                found.append(answer)
+                sys.exit(f"{experiment} {settings}: {observable} was read in {len(found)} of "
+                         f"{5 * count} fills")
+            value = self.read(experiment, settings, seed).get(observable, math.nan)
+            if not math.isnan(value):
+                found.append(value)
         return found
 
 
 def measure(laboratory, reading, info, factors, noise):
     own = {name: q["value"] * factors[q["unit"]] for name, q in reading["settings"].items()}
-    fills = [answer[reading["observable"]]
-             for answer in laboratory.fills(reading["experiment"], own, reading["fills"])]
+    fills = laboratory.fills(reading["experiment"], reading["observable"], own, reading["fills"])
     mean = statistics.mean(fills)
     scatter = statistics.stdev(fills) / math.sqrt(len(fills)) if len(fills) > 1 else 0.0
     settings = dict(reading["settings"])
