@@ -152,7 +152,7 @@ def next_prime(n):
 
 class TiltingBox(Apparatus):
     boundary = "f p f"
-    steepest = 38.0  # degrees to which the peers turn
+    steepest = 60.0  # degrees to which the peers turn; cohesive beds slide late
     frame_interval = 0.004
 
     def grains(self):
