@@ -3,9 +3,10 @@
 /// Protocol: a cylinder stands in the middle of a disc that is covered with grains' stuff and has a
 /// low rim of the same. Grains rain into it, come to rest and are struck off at `fill`. The
 /// cylinder is lifted at `lift_speed` until its lower edge is above all grains, or at twice `fill`:
-/// the few that still hang in it then are carried off with it. What falls off the disc is removed. When the heap is at rest the height of its surface is read in rings, a grain
-/// wide, between 20 and 80 % of the disc's radius: the mean, over twelve sectors, of the highest
-/// top of a grain. heap_angle: slope of the straight line through them.
+/// the few that still hang in it then are carried off with it. What falls off the disc is removed.
+/// When the heap is at rest the height of its surface is read in rings, a grain wide, between 20
+/// and 80 % of the disc's radius: the mean, over twelve sectors, of the highest top of a grain.
+/// heap_angle: slope of the straight line through them.
 ///
 /// Source: the fixed-base poured heap of Zhou, Xu, Yu & Zulli 2002, Powder Technology 125, 45-54,
 /// with the lifted cylinder of ISO 902 practice in place of their outlet.
@@ -136,25 +137,19 @@ bool Heap::lift(const Settings& s, Session& session) {
   World& world = session.world();
   const std::size_t cylinder = cylinder_of(world);
   world.drive(cylinder, {0.0, 0.0, s.lift_speed});
-  const double high = 2.0 * s.fill;
-  const auto hangs = [&](const GrainRow& g) {
-    return g.z + g.radius > world.surfaces()[cylinder].from_z;
-  };
-  const auto lifted = [&] {
-    return world.surfaces()[cylinder].from_z >= high ||
-           std::ranges::none_of(world.grains().rows, hangs);
-  };
-  const std::string stuck = "the cylinder was lifted by twice `fill` and grains still hang in it";
-  if (!session.until(lifted, 5e-3, 1.1 * high / s.lift_speed, FailureKind::not_observed, stuck)) {
-    return false;
+  const auto edge = [&] { return world.surfaces()[cylinder].from_z; };
+  const auto hangs = [&](const GrainRow& g) { return g.z + g.radius > edge(); };
+  const auto& rows = world.grains().rows;
+  while (edge() < 2.0 * s.fill && std::ranges::any_of(rows, hangs)) {
+    if (!session.run_for(5e-3)) return false;
   }
   session.stage("lifted");
-  const auto& rows = world.grains().rows;
   const double share = static_cast<double>(std::ranges::count_if(rows, hangs)) /
                        static_cast<double>(std::max<std::size_t>(rows.size(), 1));
   if (share > most_hanging) {
     return session.fail(FailureKind::not_observed,
-                        stuck + ": " + quantity_text(share, unit::percent) + " of them");
+                        "the cylinder was lifted by twice `fill` and grains still hang in it: " +
+                            quantity_text(share, unit::percent) + " of them");
   }
   world.remove(hangs);  // carried off with it
   world.change_surfaces().pop_back();
